@@ -40,10 +40,11 @@ contains
       character(len=:), allocatable :: text
       character(len=32) :: buffer
       real(real64) :: back
-      integer :: digits, status
+      integer :: digits, least, status
       character(len=16) :: form
 
-      do digits = 1, 17
+      least = merge(17, 1, abs(value) > 1.0e308_real64)   ! fewer digits could round up to infinity
+      do digits = least, 17
          write (form, '(a,i0,a)') '(es26.', digits - 1, 'e3)'
          write (buffer, form) value
          read (buffer, *, iostat=status) back
@@ -71,7 +72,7 @@ contains
          return
       end if
       read (buffer, *) value
-      digits = max(0, len(trim_zero(buffer(:mark - 1))) - index(buffer, '.') - power)
+      digits = max(0, digits_behind_point(trim_zero(buffer(:mark - 1))) - power)
       write (form, '(a,i0,a)') '(f32.', digits, ')'
       write (fixed, form) value
       text = trim_zero(trim(adjustl(fixed)))
@@ -80,6 +81,14 @@ contains
          if (text(1:2) == '-.') text = '-0'//text(2:)
       end if
    end function plain_form
+
+   pure function digits_behind_point(buffer) result(digits)
+      character(len=*), intent(in) :: buffer
+      integer :: digits
+
+      digits = 0
+      if (index(buffer, '.') > 0) digits = len(buffer) - index(buffer, '.')
+   end function digits_behind_point
 
    !> Drop zeros behind the decimal point, and the point if nothing is left behind it.
    pure function trim_zero(buffer) result(text)
