@@ -53,7 +53,7 @@ contains
       character(len=11) :: names(12)
 
       names = [character(len=11) :: 'program', 'git_hash', 'compiler', 'flags', 'mpi', 'hdf5', &
-         'metis', 'ranks', 'date', 'deck_sha256', 'job', 'units']
+         'metis', 'ranks', 'date', 'deck_sha256', 'job', 'unit_system']
    end function provenance_names
 
    !> The facts as texts, in the order of `provenance_names`.
