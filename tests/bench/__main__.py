@@ -1,0 +1,7 @@
+"""Entry of `python -m bench`."""
+
+import sys
+
+from bench.driver import main
+
+sys.exit(main())

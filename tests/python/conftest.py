@@ -1,0 +1,6 @@
+"""The packages verify and bench stand beside this folder."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
