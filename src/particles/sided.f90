@@ -1,0 +1,84 @@
+!> Bins that touch split nodes: their rows for each side, and the particles' weights of the sides.
+!>
+!> With k cracks in reach a bin has 2**k sets of rows; set s takes the plus side of crack i where bit
+!> i - 1 of s is set. A particle's weight of a set is the product of (1 + H)/2 or (1 - H)/2, which
+!> add up to one: u_p = sum over sets of g_s sum over nodes of N v_s.
+module xmpm_sided
+   use xmpm_kinds, only: wp
+   use xmpm_lattice, only: bins_per_block
+   use xmpm_storage, only: particles_t, lanes, n_near, near_crack, near_jump, near_slope
+   implicit none
+   private
+
+   public :: sided_t, clear_sided, side_weights, most_cracks
+
+   integer, parameter :: most_cracks = 3   !! cracks that one bin can tell apart
+
+   !> Rows by side of the bins that need them.
+   type :: sided_t
+      integer :: n = 0                          !! sided bins
+      integer, allocatable :: bin(:, :)         !! (64,blocks) number of the sided bin, 0 for none
+      integer, allocatable :: n_cracks(:)       !! (n)
+      integer, allocatable :: crack(:, :)       !! (3,n) cracks in reach
+      integer, allocatable :: rows(:, :, :)     !! (nodes,0:7,n) row of each stencil node and set
+   end type sided_t
+
+contains
+
+   !> No sided bins, for a number of blocks; `n` can be filled in.
+   pure subroutine clear_sided(sided, n_blocks, n, nodes)
+      type(sided_t), intent(inout) :: sided
+      integer, intent(in) :: n_blocks   !! blocks of this rank
+      integer, intent(in) :: n          !! sided bins to make room for
+      integer, intent(in) :: nodes      !! nodes of a stencil
+
+      sided%n = 0
+      if (allocated(sided%bin)) deallocate (sided%bin, sided%n_cracks, sided%crack, sided%rows)
+      allocate (sided%bin(bins_per_block, n_blocks), source=0)
+      allocate (sided%n_cracks(n), sided%crack(most_cracks, n), source=0)
+      allocate (sided%rows(nodes, 0:2**most_cracks - 1, n), source=0)
+   end subroutine clear_sided
+
+   !> Weights of one set and their gradients in the lanes of a chunk.
+   pure subroutine side_weights(p, chunk, cracks, set, weight, slope)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: chunk
+      integer, intent(in) :: cracks(:)             !! cracks in reach of the bin
+      integer, intent(in) :: set                   !! 0 to 2**size(cracks) - 1
+      real(wp), intent(out) :: weight(lanes)       !! g
+      real(wp), intent(out) :: slope(lanes, 3)     !! gradient of g [1/length]
+      real(wp) :: h, sign, g, grad(3)
+      integer :: i, k, at
+
+      weight = 1
+      slope = 0
+      do k = 1, size(cracks)
+         sign = merge(0.5_wp, -0.5_wp, btest(set, k - 1))
+         do i = 1, p%count(chunk)
+            at = slot_of(p, i, chunk, cracks(k))
+            h = 0
+            grad = 0
+            if (at >= 0) then
+               h = p%near(i, at + near_jump, p%attached(chunk))
+               grad = p%near(i, at + near_slope:at + near_slope + 2, p%attached(chunk))
+            end if
+            g = 0.5_wp + sign*h
+            slope(i, :) = slope(i, :)*g + weight(i)*sign*grad
+            weight(i) = weight(i)*g
+         end do
+      end do
+   end subroutine side_weights
+
+   !> Where the slot of a crack begins, less one; -1 where the particle has none.
+   pure function slot_of(p, lane, chunk, crack) result(at)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: lane, chunk, crack
+      integer :: at, k
+
+      at = -1
+      if (p%attached(chunk) == 0) return
+      do k = 0, p%slots - 1
+         if (nint(p%near(lane, n_near*k + near_crack, p%attached(chunk))) == crack) at = n_near*k
+      end do
+   end function slot_of
+end module xmpm_sided
