@@ -1,6 +1,7 @@
 !> Strict reading of numbers: a text is a number as a whole, in full double precision, or it is refused.
 module xmpm_numbers
-   use, intrinsic :: ieee_arithmetic, only: ieee_get_halting_mode, ieee_set_halting_mode
+   use, intrinsic :: ieee_arithmetic, only: ieee_get_halting_mode, ieee_set_halting_mode, &
+      ieee_set_flag
    use, intrinsic :: ieee_exceptions, only: ieee_usual
    use xmpm_kinds, only: wp
    implicit none
@@ -113,6 +114,7 @@ contains
       call ieee_get_halting_mode(ieee_usual, halting)
       call ieee_set_halting_mode(ieee_usual, .false.)
       read (buffer, *, iostat=io) value
+      call ieee_set_flag(ieee_usual, .false.)
       call ieee_set_halting_mode(ieee_usual, halting)
       status = number_good
       if (io /= 0) value = huge(value)

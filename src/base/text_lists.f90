@@ -4,7 +4,7 @@ module xmpm_text_lists
    implicit none
    private
 
-   public :: append, join, slice
+   public :: append, join, slice, upper
 
 contains
 
@@ -48,4 +48,16 @@ contains
 
       part = text(first:last)
    end function slice
+
+   !> Upper-case copy of a text.
+   pure function upper(text) result(up)
+      character(len=*), intent(in) :: text   !! any
+      character(len=:), allocatable :: up
+      integer :: i
+
+      up = text
+      do i = 1, len(text)
+         if (text(i:i) >= 'a' .and. text(i:i) <= 'z') up(i:i) = achar(iachar(text(i:i)) - 32)
+      end do
+   end function upper
 end module xmpm_text_lists

@@ -3,14 +3,14 @@ module xmpm_deck_data
    use xmpm_kinds, only: wp
    use xmpm_error, only: error_t, raise, code_usage
    use xmpm_text, only: string_t, to_text, lower
-   use xmpm_text_lists, only: append
+   use xmpm_text_lists, only: append, upper
    use xmpm_expression, only: variables_t
    implicit none
    private
 
    public :: deck_t, block_t, entry_t
    public :: count_blocks, find_block, block_named, names_of_blocks, entry_place
-   public :: has, given, real_of, reals_of, integer_of, text_of, texts_of, flag_of
+   public :: has, given, valid, real_of, reals_of, integer_of, text_of, texts_of, flag_of
    public :: complain, warn, note_problem, problems, warnings_of, add_block, add_entry
 
    !> One `key = values`, or a flag.
@@ -145,6 +145,18 @@ contains
       place = entry_place(block, key)
       if (place > 0) given = block%entries(place)%given
    end function given
+
+   !> Whether a key has a value that passed all checks of its own.
+   pure function valid(block, key)
+      type(block_t), intent(in) :: block    !! of the deck
+      character(len=*), intent(in) :: key   !! lower case
+      logical :: valid
+      integer :: place
+
+      valid = .false.
+      place = entry_place(block, key)
+      if (place > 0) valid = block%entries(place)%valid
+   end function valid
 
    !> The (first) number of a key; 0 where the key has none.
    pure function real_of(block, key) result(value)
@@ -359,15 +371,4 @@ contains
       if (len(key) > 0) text = text//', '//key
       text = text//': '
    end function place_text
-
-   pure function upper(text) result(up)
-      character(len=*), intent(in) :: text
-      character(len=len(text)) :: up
-      integer :: i
-
-      up = text
-      do i = 1, len(text)
-         if (text(i:i) >= 'a' .and. text(i:i) <= 'z') up(i:i) = achar(iachar(text(i:i)) - 32)
-      end do
-   end function upper
 end module xmpm_deck_data

@@ -1,6 +1,7 @@
 !> The deck as it was understood: every default filled in, every expression a number, itself a deck.
 module xmpm_deck_echo
    use xmpm_text, only: to_text
+   use xmpm_text_lists, only: upper
    use xmpm_deck_data, only: deck_t, block_t, entry_t
    implicit none
    private
@@ -78,15 +79,4 @@ contains
       end do
       quoted = quoted//mark
    end function quote
-
-   pure function upper(text) result(up)
-      character(len=*), intent(in) :: text
-      character(len=len(text)) :: up
-      integer :: i
-
-      up = text
-      do i = 1, len(text)
-         if (text(i:i) >= 'a' .and. text(i:i) <= 'z') up(i:i) = achar(iachar(text(i:i)) - 32)
-      end do
-   end function upper
 end module xmpm_deck_echo

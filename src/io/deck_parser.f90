@@ -1,7 +1,7 @@
 !> Tokens to blocks and entries, checked against the names in the keyword table.
 module xmpm_deck_parser
    use xmpm_text, only: string_t, lower
-   use xmpm_text_lists, only: append, join
+   use xmpm_text_lists, only: append, join, upper
    use xmpm_expression, only: is_identifier
    use xmpm_keywords, only: keyword_t, keyword_place, key_place, keyword_names, key_names, kind_flag, kind_text, &
       kind_word, no_name, must_have_name
@@ -53,8 +53,8 @@ contains
       place = place + 1
       found = keyword_place(table, name)
       if (found == 0) then
-         call blame(deck, tokens, start, "unknown keyword '*"//name//"'" &
-            //did_you_mean('*'//name, keyword_names(table)))
+         call blame(deck, tokens, start, "unknown keyword '*"//upper(name)//"'" &
+            //did_you_mean('*'//upper(name), keyword_names(table)))
          call skip_to_keyword(tokens, place)
       else if (name == 'parameter') then
          call read_parameters(tokens, deck, place)
@@ -189,15 +189,15 @@ contains
       type(keyword_t), intent(in) :: keyword
 
       if (size(keyword%keys) == 0) then
-         call blame(deck, tokens, place, '*'//trim(keyword%name)//" takes no keys, but here is '" &
+         call blame(deck, tokens, place, '*'//upper(trim(keyword%name))//" takes no keys, but here is '" &
             //tokens%list(place)%text//"'")
       else if (is_identifier(tokens%list(place)%text)) then
          call blame(deck, tokens, place, "unknown key '"//tokens%list(place)%text//"' of *" &
-            //trim(keyword%name)//did_you_mean(tokens%list(place)%text, key_names(keyword)) &
+            //upper(trim(keyword%name))//did_you_mean(tokens%list(place)%text, key_names(keyword)) &
             //' Known: '//join(key_names(keyword), ', '))
       else
          call blame(deck, tokens, place, "'"//tokens%list(place)%text//"' stands where a key of *" &
-            //trim(keyword%name)//' must be: '//join(key_names(keyword), ', '))
+            //upper(trim(keyword%name))//' must be: '//join(key_names(keyword), ', '))
       end if
    end subroutine blame_key
 

@@ -3,7 +3,7 @@ module xmpm_deck_values
    use xmpm_kinds, only: wp
    use xmpm_error, only: error_t
    use xmpm_text, only: string_t, to_text, lower
-   use xmpm_text_lists, only: join
+   use xmpm_text_lists, only: join, upper
    use xmpm_expression, only: variables_t, evaluate, define, is_reserved, is_identifier
    use xmpm_keywords, only: keyword_t, key_t, keyword_place, key_place, split_words, in_range, &
       kind_real, kind_integer, kind_word, kind_text, kind_flag, kind_axis
@@ -22,6 +22,7 @@ contains
       logical :: done(size(deck%definitions)), unknown
       type(error_t), allocatable :: error
       real(wp) :: value
+      type(entry_t) :: definition
       integer :: i, before
 
       done = .false.
@@ -31,9 +32,10 @@ contains
          before = count(done)
          do i = 1, size(done)
             if (done(i)) cycle
-            call value_of(deck%definitions(i), 1, deck%parameters, value, error, unknown)
-            if (.not. allocated(error)) call define(deck%parameters, deck%definitions(i)%key, value)
-            if (allocated(error) .and. .not. unknown) call blame(deck, deck%definitions(i), 1, error%message)
+            definition = deck%definitions(i)
+            call value_of(definition, 1, deck%parameters, value, error, unknown)
+            if (.not. allocated(error)) call define(deck%parameters, definition%key, value)
+            if (allocated(error) .and. .not. unknown) call blame(deck, definition, 1, error%message)
             done(i) = .not. (allocated(error) .and. unknown)
          end do
       end do
@@ -46,28 +48,36 @@ contains
    subroutine check_definitions(deck, done)
       type(deck_t), intent(inout) :: deck
       logical, intent(inout) :: done(:)
-      integer :: i, j
+      type(entry_t) :: definition
+      integer :: i, first
 
       do i = 1, size(done)
-         associate (definition => deck%definitions(i))
-            done(i) = .true.
-            if (.not. is_identifier(definition%key)) then
-               call blame(deck, definition, 0, 'the name of a parameter is letters, digits and _, a letter first')
-            else if (is_reserved(definition%key)) then
-               call blame(deck, definition, 0, 'this name is that of a function or a constant')
-            else
-               done(i) = .not. definition%valid
-               do j = 1, i - 1
-                  if (deck%definitions(j)%key /= definition%key) cycle
-                  call blame(deck, definition, 0, 'this parameter is already set at ' &
-                     //deck%definitions(j)%file//':'//to_text(deck%definitions(j)%line))
-                  done(i) = .true.
-                  exit
-               end do
-            end if
-         end associate
+         definition = deck%definitions(i)
+         done(i) = .true.
+         first = first_definition(deck, definition%key)
+         if (.not. is_identifier(definition%key)) then
+            call blame(deck, definition, 0, &
+               'the name of a parameter is letters, digits and _, a letter first')
+         else if (is_reserved(definition%key)) then
+            call blame(deck, definition, 0, 'this name is that of a function or a constant')
+         else if (first < i) then
+            call blame(deck, definition, 0, 'this parameter is already set at ' &
+               //deck%definitions(first)%file//':'//to_text(deck%definitions(first)%line))
+         else
+            done(i) = .not. definition%valid
+         end if
       end do
    end subroutine check_definitions
+
+   pure function first_definition(deck, name) result(first)
+      type(deck_t), intent(in) :: deck
+      character(len=*), intent(in) :: name
+      integer :: first
+
+      do first = 1, size(deck%definitions)
+         if (deck%definitions(first)%key == name) return
+      end do
+   end function first_definition
 
    !> Say why a parameter could not be evaluated: an unknown name, or one of a circle.
    subroutine blame_pending(deck, i, done)
@@ -75,6 +85,7 @@ contains
       integer, intent(in) :: i
       logical, intent(in) :: done(:)
       type(variables_t) :: all_names
+      type(entry_t) :: definition
       type(error_t), allocatable :: error
       logical :: unknown
       real(wp) :: value
@@ -84,11 +95,12 @@ contains
       do j = 1, size(done)
          if (.not. done(j)) call define(all_names, deck%definitions(j)%key, 1.0_wp)
       end do
-      call value_of(deck%definitions(i), 1, all_names, value, error, unknown)
+      definition = deck%definitions(i)
+      call value_of(definition, 1, all_names, value, error, unknown)
       if (allocated(error)) then
-         call blame(deck, deck%definitions(i), 1, error%message)
+         call blame(deck, definition, 1, error%message)
       else
-         call blame(deck, deck%definitions(i), 1, 'it depends on itself or on another parameter without a value')
+         call blame(deck, definition, 1, 'it depends on itself or on another parameter without a value')
       end if
    end subroutine blame_pending
 
@@ -154,8 +166,8 @@ contains
       else
          allowed = to_text(least)//' to '//to_text(most)
       end if
-      call blame(deck, entry, 0, 'needs '//allowed//merge(' values,', ' value, ', most > 1) &
-         //' but '//to_text(size(entry%texts))//' are given: '//join(entry%texts, ' '))
+      call blame(deck, entry, 0, 'it needs '//allowed//' '//trim(merge('values', 'value ', most > 1)) &
+         //' and got '//to_text(size(entry%texts))//': '//join(entry%texts, ' '))
       entry%valid = .false.
    end subroutine check_count
 
@@ -320,25 +332,34 @@ contains
    subroutine check_required(deck, table)
       type(deck_t), intent(inout) :: deck        !! gets problems
       type(keyword_t), intent(in) :: table(:)    !! all keywords
-      integer :: i, j
+      type(block_t) :: block
+      integer :: i
 
       do i = 1, size(table)
          if (.not. table(i)%required .or. table(i)%directive) cycle
          if (count_blocks(deck, trim(table(i)%name)) > 0) cycle
-         call note_problem(deck, huge(i), deck%name//': there is no *'//trim(table(i)%name)//' ('// &
+         call note_problem(deck, huge(i), deck%name//': there is no *'//upper(trim(table(i)%name))//' ('// &
             trim(table(i)%meaning)//')')
       end do
       do i = 1, size(deck%blocks)
-         associate (keyword => table(keyword_place(table, deck%blocks(i)%keyword)))
-            do j = 1, size(keyword%keys)
-               if (.not. keyword%keys(j)%required) cycle
-               if (has(deck%blocks(i), trim(keyword%keys(j)%name))) cycle
-               call complain(deck, deck%blocks(i), '', "the key '"//trim(keyword%keys(j)%name)//"' is missing (" &
-                  //trim(keyword%keys(j)%meaning)//')')
-            end do
-         end associate
+         block = deck%blocks(i)
+         call check_required_keys(deck, block, table(keyword_place(table, block%keyword)))
       end do
    end subroutine check_required
+
+   subroutine check_required_keys(deck, block, keyword)
+      type(deck_t), intent(inout) :: deck
+      type(block_t), intent(in) :: block
+      type(keyword_t), intent(in) :: keyword
+      integer :: i
+
+      do i = 1, size(keyword%keys)
+         if (.not. keyword%keys(i)%required) cycle
+         if (has(block, trim(keyword%keys(i)%name))) cycle
+         call complain(deck, block, '', "the key '"//trim(keyword%keys(i)%name)//"' is missing (" &
+            //trim(keyword%keys(i)%meaning)//')')
+      end do
+   end subroutine check_required_keys
 
    !> 'file:line: key = text: message', with the i-th text, or none where i is 0.
    subroutine blame(deck, entry, i, message)

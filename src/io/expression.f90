@@ -1,6 +1,7 @@
 !> Arithmetic in the deck: numbers, names, + - * / ** ^, parentheses and the usual functions (radians).
 module xmpm_expression
-   use, intrinsic :: ieee_arithmetic, only: ieee_get_halting_mode, ieee_set_halting_mode
+   use, intrinsic :: ieee_arithmetic, only: ieee_get_halting_mode, ieee_set_halting_mode, &
+      ieee_set_flag
    use, intrinsic :: ieee_exceptions, only: ieee_usual
    use xmpm_kinds, only: wp, pi
    use xmpm_error, only: error_t, raise, code_usage
@@ -58,6 +59,7 @@ contains
       call ieee_get_halting_mode(ieee_usual, halting)
       call ieee_set_halting_mode(ieee_usual, .false.)
       call read_sum(reader, value)
+      call ieee_set_flag(ieee_usual, .false.)
       call ieee_set_halting_mode(ieee_usual, halting)
       if (.not. allocated(reader%fault)) then
          if (next(reader) /= '') call blame(reader, "unexpected '"//next(reader)//"'")

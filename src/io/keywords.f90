@@ -2,7 +2,7 @@
 module xmpm_keywords
    use xmpm_kinds, only: wp
    use xmpm_text, only: string_t
-   use xmpm_text_lists, only: append
+   use xmpm_text_lists, only: append, upper
    use xmpm_numbers, only: parse_real, number_good
    implicit none
    private
@@ -108,7 +108,7 @@ contains
       end do
    end function key_place
 
-   !> All keywords with their star.
+   !> All keywords with their star, in upper case.
    pure function keyword_names(table) result(names)
       type(keyword_t), intent(in) :: table(:)   !! all keywords
       type(string_t), allocatable :: names(:)
@@ -116,7 +116,7 @@ contains
 
       allocate (names(size(table)))
       do i = 1, size(table)
-         names(i)%s = '*'//trim(table(i)%name)
+         names(i)%s = '*'//upper(trim(table(i)%name))
       end do
    end function keyword_names
 

@@ -5,7 +5,7 @@ module xmpm_keywords_table
    implicit none
    private
 
-   public :: keyword_table
+   public :: make_keyword_table
 
    character(len=*), parameter :: positive = '(0, inf)'
    character(len=*), parameter :: not_negative = '[0, inf)'
@@ -14,8 +14,8 @@ module xmpm_keywords_table
 contains
 
    !> Every keyword with its keys, in the order of the manual.
-   pure function keyword_table() result(t)
-      type(keyword_t), allocatable :: t(:)
+   pure subroutine make_keyword_table(t)
+      type(keyword_t), allocatable, intent(out) :: t(:)   !! the table
 
       call add_general(t)
       call add_materials_and_bodies(t)
@@ -25,7 +25,7 @@ contains
       call add_results(t)
       call add_keyword(t, keyword_t(name='end', required=.true., directive=.true., &
          meaning='closes the deck; a deck without it is taken for a truncated one'))
-   end function keyword_table
+   end subroutine make_keyword_table
 
    pure subroutine add_general(t)
       type(keyword_t), allocatable, intent(inout) :: t(:)
@@ -148,10 +148,10 @@ contains
          meaning='edge of the triangles; the cell size where not given'))
       call add_key(t, key_t(name='front', kind=kind_word, default='graded', words='graded node full cut', &
          meaning='rule by which nodes near the front are enriched'))
-      call add_key(t, key_t(name='ramp', range='(0, 2]', default='0.5', &
-         meaning='graded front: distance behind the front at which the weight is whole, in cells'))
-      call add_key(t, key_t(name='ramp_end', range='[0, 2]', default='0.4', &
-         meaning='graded front: distance behind the front at which the weight starts, in cells'))
+      call add_key(t, key_t(name='ramp', range='(0, 4]', default='0.5', &
+         meaning='graded front: length over which the weight falls from 1 to 0, in cells'))
+      call add_key(t, key_t(name='ramp_end', range='[-4, 4]', default='0.4', &
+         meaning='graded front: distance ahead of the front at which the weight is 0, in cells'))
    end subroutine add_cracks
 
    pure subroutine add_loads(t)
