@@ -10,6 +10,8 @@ module xmpm_file_system
    interface
       function c_mkdir(path, mode) result(status) bind(c, name='mkdir')
          import :: c_int, c_char
+         implicit none
+         ! allow(assumed-size)
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: mode   ! mode_t, passed like an int by the platforms we know
          integer(c_int) :: status
@@ -17,12 +19,16 @@ module xmpm_file_system
 
       function c_rename(from, to) result(status) bind(c, name='rename')
          import :: c_int, c_char
+         implicit none
+         ! allow(assumed-size)
          character(kind=c_char), intent(in) :: from(*), to(*)
          integer(c_int) :: status
       end function c_rename
 
       function c_remove(path) result(status) bind(c, name='remove')
          import :: c_int, c_char
+         implicit none
+         ! allow(assumed-size)
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int) :: status
       end function c_remove

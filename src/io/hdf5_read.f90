@@ -25,6 +25,7 @@ module xmpm_hdf5_read
    interface
       pure function c_strlen(text) result(n) bind(c, name='strlen')
          import :: c_ptr, c_size_t
+         implicit none
          type(c_ptr), value :: text
          integer(c_size_t) :: n
       end function c_strlen

@@ -125,11 +125,11 @@ contains
 
       if (history%unit == -1) return
       write (history%unit, '(a)', iostat=status) text
-      flush (history%unit)
+      if (status == 0) flush (history%unit)
       history%bytes = history%bytes + len(text, i8) + 1
       inquire (file=history%path, size=bytes)
-      if (bytes < history%bytes) status = -1
-      if (status /= 0 .and. .not. allocated(history%failure)) then
+      if (status == 0 .and. bytes >= history%bytes) return
+      if (.not. allocated(history%failure)) then
          history%failure = history%path//': a row cannot be written (disk full?)'
       end if
    end subroutine write_text

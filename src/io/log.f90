@@ -25,6 +25,7 @@ module xmpm_log
    interface
       function c_isatty(descriptor) result(answer) bind(c, name='isatty')
          import :: c_int
+         implicit none
          integer(c_int), value :: descriptor
          integer(c_int) :: answer
       end function c_isatty
@@ -115,8 +116,8 @@ contains
       integer :: status
 
       if (log%unit == -1) return
-      write (log%unit, '(a)', iostat=status) text
-      flush (log%unit, iostat=status)
+      write (log%unit, '(a)', iostat=status) text   ! a full disk must not end the run here
+      if (status == 0) flush (log%unit)
    end subroutine log_to_file
 
    !> Show a line on standard output alone; on a terminal it replaces the line shown before it.

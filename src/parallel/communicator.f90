@@ -52,6 +52,7 @@ module xmpm_communicator
    interface
       subroutine c_exit(code) bind(c, name='exit')
          import :: c_int
+         implicit none
          integer(c_int), value :: code
       end subroutine c_exit
    end interface
