@@ -3,7 +3,7 @@
 !> An ordinary node has one row. A node that cracks split has one row for each side: its ordinary
 !> row serves the minus side of all cracks, further rows stand behind all ordinary ones.
 module xmpm_grid
-   use xmpm_kinds, only: wp, i1
+   use xmpm_kinds, only: wp
    use xmpm_lattice, only: lattice_t, make_lattice
    use xmpm_blocks, only: blocks_t, nodes_per_block, node_place
    implicit none
@@ -26,7 +26,7 @@ module xmpm_grid
       integer, allocatable :: parent(:)        !! (n_plain+1:) ordinary row of a split node's row
       real(wp), allocatable :: node(:, :)      !! (8,rows) mass, momentum or velocity, force or change
       real(wp), allocatable :: second(:, :)    !! (3,rows) momentum of MUSL's second map
-      integer(i1), allocatable :: mine(:)      !! (rows) 1 where this rank counts the row in sums
+      logical, allocatable :: mine(:)          !! (rows) whether this rank counts the row in sums
    end type grid_t
 
 contains

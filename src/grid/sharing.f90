@@ -1,6 +1,6 @@
 !> Which rows a rank shares with which other, found from the directory without a message.
 module xmpm_sharing
-   use xmpm_kinds, only: i1, i8
+   use xmpm_kinds, only: i8
    use xmpm_sort, only: sort_order
    use xmpm_lattice, only: lattice_t, block_key
    use xmpm_blocks, only: blocks_t, owner_of, touched_nodes, nodes_per_block
@@ -149,11 +149,11 @@ contains
       integer :: i, k
 
       if (allocated(grid%mine)) deallocate (grid%mine)
-      allocate (grid%mine(grid%n_rows), source=1_i1)
+      allocate (grid%mine(grid%n_rows), source=.true.)
       do k = 1, size(sharing%ranks)
          if (sharing%ranks(k) > rank) cycle
          do i = sharing%first(k), sharing%first(k + 1) - 1
-            grid%mine(sharing%rows(i)) = 0_i1
+            grid%mine(sharing%rows(i)) = .false.
          end do
       end do
    end subroutine mark_mine

@@ -9,7 +9,7 @@ module xmpm_sided_transfer
    implicit none
    private
 
-   public :: scatter_sided, velocity_sided, gradient_sided, mean_sided
+   public :: gather_sides, push_sides, scatter_sided, velocity_sided, gradient_sided, mean_sided
 
 contains
 
@@ -96,7 +96,7 @@ contains
 
       c = first
       do while (c > 0)
-         call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, change)
+         call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, 5, change)
          do i = 1, 3
             p%q(:, 3 + i, c) = merge(keep*p%q(:, 3 + i, c) + change(:, i), 0.0_wp, p%q(:, c_m, c) > 0)
          end do
@@ -125,7 +125,7 @@ contains
 
       c = first
       do while (c > 0)
-         call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, value)
+         call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, 2, value)
          do i = 1, 3
             value(:, i) = p%q(:, c_m, c)*value(:, i)
          end do
@@ -134,14 +134,15 @@ contains
       end do
    end subroutine mean_sided
 
-   !> Interpolate fields 5:7: sum over sides of g N v.
-   subroutine gather_sides(p, c, kernels, sided, s, offsets, frame, grid, value)
+   !> Interpolate three fields: sum over sides of g N v.
+   subroutine gather_sides(p, c, kernels, sided, s, offsets, frame, grid, field, value)
       type(particles_t), intent(in) :: p
       integer, intent(in) :: c, s, offsets(:)
       type(kernels_t), intent(in) :: kernels
       type(sided_t), intent(in) :: sided
       type(frame_t), intent(in) :: frame
       type(grid_t), intent(in) :: grid
+      integer, intent(in) :: field
       real(wp), intent(out) :: value(lanes, 3)
       real(wp) :: tile(8, tile_nodes), g(lanes), slope(lanes, 3), part(lanes, 3)
       type(frame_t) :: here
@@ -154,7 +155,7 @@ contains
          call side_weights(p, c, sided%crack(:sided%n_cracks(s), s), set, g, slope)
          if (.not. any(g > 0)) cycle
          call load_set(sided%rows(:, set, s), offsets, grid, tile)
-         call kernels%gather(p%q(:, :, c), here, tile, 5, part)
+         call kernels%gather(p%q(:, :, c), here, tile, field, part)
          do i = 1, 3
             value(:, i) = value(:, i) + g*part(:, i)
          end do

@@ -5,13 +5,13 @@
 module xmpm_storage
    use xmpm_kinds, only: wp, i8
    use xmpm_lattice, only: lattice_t, bin_corner, bins_per_block, block_width
-   use xmpm_blocks, only: blocks_t
+   use xmpm_blocks, only: blocks_t, local_block
    implicit none
    private
 
    public :: particles_t, clear_particles, append_particle, remove_lane, move_lane
    public :: count_particles, bin_of_chunk, read_record, take_records
-   public :: record_t, new_record
+   public :: record_t, new_record, renumber_blocks, attach
    public :: lanes, n_hot, c_x, c_v, c_m, c_vol, c_s
    public :: n_near, near_crack, near_side, near_psi, near_phi, near_jump, near_slope
 
@@ -42,6 +42,7 @@ module xmpm_storage
       real(wp), allocatable :: x0(:, :, :)        !! (8,3,chunks) first position [length]
       integer(i8), allocatable :: id(:, :)        !! (8,chunks) number for life, 0 in empty lanes
       integer(i8), allocatable :: sets(:, :)      !! (8,chunks) bit per named set
+      integer(i8), allocatable :: any_set(:)      !! (chunks) at least the bits of its particles
       integer, allocatable :: count(:)            !! (chunks) particles in the chunk
       integer, allocatable :: body(:)             !! (chunks) body of its particles
       integer, allocatable :: bin(:)              !! (chunks) 64 (block - 1) + bin of the block
@@ -94,13 +95,14 @@ contains
       p%free_attached = 0
       p%slots = slots
       if (allocated(p%q)) then
-         deallocate (p%q, p%x0, p%id, p%sets, p%count, p%body, p%bin, p%next, p%attached)
+         deallocate (p%q, p%x0, p%id, p%sets, p%count, p%body, p%bin, p%next, p%attached, &
+            p%any_set)
          deallocate (p%near, p%next_attached)
       end if
       allocate (p%q(lanes, n_hot, capacity), p%x0(lanes, 3, capacity))
       allocate (p%id(lanes, capacity), p%sets(lanes, capacity))
       allocate (p%count(capacity), p%body(capacity), p%bin(capacity), p%next(capacity))
-      allocate (p%attached(capacity))
+      allocate (p%attached(capacity), p%any_set(capacity))
       allocate (p%near(lanes, n_near*slots, 0), p%next_attached(0))
       if (allocated(p%head)) deallocate (p%head)
       allocate (p%head(bins_per_block, n_blocks), source=0)
@@ -142,6 +144,7 @@ contains
       p%x0(i, :, c) = record%x0
       p%id(i, c) = record%id
       p%sets(i, c) = record%sets
+      p%any_set(c) = ior(p%any_set(c), record%sets)
       if (.not. allocated(record%near)) return
       if (p%attached(c) == 0) call attach(p, c)
       p%near(i, :, p%attached(c)) = record%near
@@ -200,6 +203,7 @@ contains
       p%x0(to_lane, :, to_chunk) = p%x0(lane, :, chunk)
       p%id(to_lane, to_chunk) = p%id(lane, chunk)
       p%sets(to_lane, to_chunk) = p%sets(lane, chunk)
+      p%any_set(to_chunk) = ior(p%any_set(to_chunk), p%sets(lane, chunk))
       if (p%attached(to_chunk) == 0) return
       if (p%attached(chunk) > 0) then
          p%near(to_lane, :, p%attached(to_chunk)) = p%near(lane, :, p%attached(chunk))
@@ -267,6 +271,7 @@ contains
       end if
       p%count(c) = 0
       p%attached(c) = 0
+      p%any_set(c) = 0
    end function fresh_chunk
 
    !> Take an empty chunk out of its bin's chain.
@@ -331,7 +336,7 @@ contains
    subroutine grow(p)
       type(particles_t), intent(inout) :: p
       real(wp), allocatable :: q(:, :, :)
-      integer(i8), allocatable :: id(:, :)
+      integer(i8), allocatable :: id(:, :), bits(:)
       integer :: n, m
 
       n = size(p%count)
@@ -348,6 +353,9 @@ contains
       allocate (id(lanes, m))
       id(:, :n) = p%sets
       call move_alloc(id, p%sets)
+      allocate (bits(m))
+      bits(:n) = p%any_set
+      call move_alloc(bits, p%any_set)
       call grow_list(p%count, m)
       call grow_list(p%body, m)
       call grow_list(p%bin, m)
@@ -364,6 +372,30 @@ contains
       longer(:size(list)) = list
       call move_alloc(longer, list)
    end subroutine grow_list
+
+   !> Follow a new layout of the blocks; blocks that are gone must be empty.
+   subroutine renumber_blocks(p, old_place, blocks)
+      type(particles_t), intent(inout) :: p
+      integer, intent(in) :: old_place(:, :)   !! (3,old blocks)
+      type(blocks_t), intent(in) :: blocks     !! the new layout
+      integer, allocatable :: head(:, :)
+      integer :: b, k, c, new
+
+      allocate (head(bins_per_block, blocks%n), source=0)
+      do b = 1, size(old_place, 2)
+         new = local_block(blocks, old_place(:, b))
+         if (new == 0) cycle
+         do k = 1, bins_per_block
+            head(k, new) = p%head(k, b)
+            c = p%head(k, b)
+            do while (c > 0)
+               p%bin(c) = bins_per_block*(new - 1) + k
+               c = p%next(c)
+            end do
+         end do
+      end do
+      call move_alloc(head, p%head)
+   end subroutine renumber_blocks
 
    !> All particles as records, in storage order; storage is left as it is.
    subroutine take_records(p, records)

@@ -212,8 +212,7 @@ contains
       tally%speed2 = fastest
    end subroutine add_motion
 
-   !> Momentum of the particles' interpolated velocity, for XPIC: sum m N (S v) to grid%second.
-   !> Fields 5:7 of the rows hold the velocity v.
+   !> Momentum of the velocity interpolated from fields 2:4, for XPIC: sum m N (S v) to grid%second.
    subroutine smooth_velocity(p, bodies, kernels, sided, first, last, grid)
       type(particles_t), intent(in) :: p
       type(bodies_t), intent(in) :: bodies
@@ -242,7 +241,7 @@ contains
             end if
             do while (c > 0)
                frame%half = bodies%half(p%body(c))
-               call kernels%gather(p%q(:, :, c), frame, tile, 5, value)
+               call kernels%gather(p%q(:, :, c), frame, tile, 2, value)
                do i = 1, 3
                   value(:, i) = value(:, i)*p%q(:, c_m, c)
                end do

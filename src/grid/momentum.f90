@@ -1,0 +1,94 @@
+!> The nodal part of a step: forces to velocities, damping, gravity, and the second map's velocity.
+module xmpm_momentum
+   use xmpm_kinds, only: wp
+   use xmpm_grid, only: grid_t
+   implicit none
+   private
+
+   public :: advance_momentum, blend_change, velocity_from_second, nodal_work_t, change_from_velocity
+
+   !> Work that nodes did or took in a step, counted once over all ranks [energy].
+   type :: nodal_work_t
+      real(wp) :: external = 0   !! by body force
+      real(wp) :: damping = 0    !! lost to nodal damping
+   end type nodal_work_t
+
+contains
+
+   !> Velocity after the step and its change: eq. 4 and 29, row by row.
+   !>
+   !> change = dt (f/m + b - rate v); fields 2:4 become the new velocity, 5:7 the change. Rows without
+   !> mass become zero. Work is exact for the change of the rows' kinetic energy.
+   subroutine advance_momentum(grid, dt, gravity, rate, work)
+      type(grid_t), intent(inout) :: grid
+      real(wp), intent(in) :: dt           !! from v(n-1/2) to v(n+1/2) [time]
+      real(wp), intent(in) :: gravity(3)   !! body force per mass [length/time^2]
+      real(wp), intent(in) :: rate         !! of nodal damping [1/time]
+      type(nodal_work_t), intent(inout) :: work
+      real(wp) :: m, v(3), change(3), mean(3)
+      integer :: i
+
+      do i = 1, grid%n_rows
+         m = grid%node(1, i)
+         if (.not. m > 0) then
+            grid%node(2:7, i) = 0
+            cycle
+         end if
+         v = grid%node(2:4, i)/m
+         change = dt*(grid%node(5:7, i)/m + gravity - rate*v)
+         grid%node(2:4, i) = v + change
+         grid%node(5:7, i) = change
+         if (.not. grid%mine(i)) cycle
+         mean = v + 0.5_wp*change
+         work%external = work%external + m*dt*dot_product(gravity, mean)
+         work%damping = work%damping + m*dt*rate*dot_product(v, mean)
+      end do
+   end subroutine advance_momentum
+
+   !> Change that gives the particles the share `eta` of the nodal velocity: fields 5:7 become
+   !> (1 - eta) change + eta target, where the target is v for PIC and 2 v - S+ S v for XPIC(2) in
+   !> the form of Nairn and Hammerquist 2021, with the momentum of S+ S v in grid%second.
+   subroutine blend_change(grid, eta, xpic)
+      type(grid_t), intent(inout) :: grid
+      real(wp), intent(in) :: eta    !! share of the nodal velocity, 0 to 1
+      logical, intent(in) :: xpic    !! whether the target is that of XPIC(2)
+      real(wp) :: target(3)
+      integer :: i
+
+      do i = 1, grid%n_rows
+         if (.not. grid%node(1, i) > 0) cycle
+         target = grid%node(2:4, i)
+         if (xpic) target = 2*target - grid%second(:, i)/grid%node(1, i)
+         grid%node(5:7, i) = (1 - eta)*grid%node(5:7, i) + eta*target
+         grid%second(:, i) = 0
+      end do
+   end subroutine blend_change
+
+   !> Velocity of MUSL's second map in fields 5:7.
+   subroutine velocity_from_second(grid)
+      type(grid_t), intent(inout) :: grid
+      integer :: i
+
+      do i = 1, grid%n_rows
+         if (grid%node(1, i) > 0) then
+            grid%node(5:7, i) = grid%second(:, i)/grid%node(1, i)
+         else
+            grid%node(5:7, i) = 0
+         end if
+      end do
+   end subroutine velocity_from_second
+
+   !> Fields 5:7 become the velocity of fields 2:4 (momentum there where `divide` is asked for).
+   subroutine change_from_velocity(grid, divide)
+      type(grid_t), intent(inout) :: grid
+      logical, intent(in) :: divide   !! whether 2:4 hold momentum
+      integer :: i
+
+      do i = 1, grid%n_rows
+         grid%node(5:7, i) = grid%node(2:4, i)
+         if (divide .and. grid%node(1, i) > 0) then
+            grid%node(5:7, i) = grid%node(2:4, i)/grid%node(1, i)
+         end if
+      end do
+   end subroutine change_from_velocity
+end module xmpm_momentum
