@@ -7,6 +7,8 @@ set(CMAKE_Fortran_FLAGS_DEBUG "")
 
 # The language is Fortran 2008, and every warning that gfortran 12 gives without noise is on.
 set(warnings
+   # `implicit none` also where a module's own does not reach: in interface bodies.
+   -fimplicit-none
    -std=f2008 -pedantic -Wall -Wextra -Wimplicit-interface -Wimplicit-procedure -Wconversion-extra)
 if(XMPM_STRICT)
    list(APPEND warnings -Werror)
