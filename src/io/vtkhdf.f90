@@ -69,7 +69,7 @@ contains
 
       field%name = name
       field%unit = unit
-      field%ids = ids
+      allocate (field%ids, source=ids)
    end function new_integer_field
 
    function new_scalar_field(name, unit, values, double) result(field)
@@ -89,7 +89,7 @@ contains
 
       field%name = name
       field%unit = unit
-      field%values = values
+      allocate (field%values, source=values)
       if (present(double)) field%double = double
    end function new_column_field
 

@@ -70,7 +70,8 @@ contains
       integer :: n, i, j
 
       n = comm%size*(comm%size - 1)/2
-      expected = [((int(100*i + j, i8), j=1, i), i=1, comm%size - 1)]
+      allocate (expected(n))
+      expected(:) = [((int(100*i + j, i8), j=1, i), i=1, comm%size - 1)]
       call open_file(file, path, error)
       call check_no_error(suite, 'one rank opens the file for itself', error)
       call read_dataset(file, 'a/ids', ids)
@@ -110,7 +111,8 @@ contains
       call check(suite, 'text attributes come back', unit == 'mm' .and. len(unit) == 2)
       call check(suite, 'real attributes come back', abs(time - 0.1_wp) <= 0)
       call check(suite, 'integer attributes come back', step == 7)
-      call check(suite, 'items are found', has_item(file, 'a/b/reals') .and. has_item(file, 'a'))
+      call check(suite, 'groups are found', has_item(file, 'a'))
+      call check(suite, 'datasets are found', has_item(file, 'a/b/reals'))
       call check(suite, 'missing items are not', .not. has_item(file, 'x/y/z'))
       call check(suite, 'the library says its version', index(hdf5_version(), '1.') == 1)
    end subroutine check_attributes

@@ -51,8 +51,9 @@ contains
          call check_no_error(suite, 'step '//to_text(i)//' is written', error)
       end do
       call check_master(suite, 'results/'//name//'.vtkhdf')
-      call check(suite, 'no temporary file is left', &
-         .not. file_exists('results/'//name//'.vtkhdf.part') .and. &
+      call check(suite, 'no temporary master is left', &
+         .not. file_exists('results/'//name//'.vtkhdf.part'))
+      call check(suite, 'no temporary step is left', &
          .not. file_exists('results/'//name//'/'//name//'_000000.vtkhdf.part'))
       call wait_for_all(comm)
       call open_series(series, comm, 'results/', name, error)
