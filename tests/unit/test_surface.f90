@@ -1,0 +1,2 @@
+program test_surface
+end program test_surface
