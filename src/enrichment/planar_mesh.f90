@@ -73,8 +73,11 @@ contains
       integer :: n, i, best
       real(wp) :: shape, best_shape
 
-      ring = [(i, i=1, mesh%points)]
-      n = size(ring)
+      n = mesh%points
+      allocate (ring(n))
+      do i = 1, n
+         ring(i) = i
+      end do
       ok = .true.
       do while (n > 2)
          best = 0

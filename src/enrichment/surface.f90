@@ -8,7 +8,7 @@ module xmpm_surface
    implicit none
    private
 
-   public :: surface_t, build_surface, refresh_geometry, surface_area
+   public :: surface_t, build_surface, refresh_geometry, surface_area, fill_void
 
    !> Mesh, topology and normals of one crack; the normal points from the minus to the plus face.
    !!
@@ -110,6 +110,42 @@ contains
       area = sum(surface%area)
    end function surface_area
 
+   !> Let vertices with no material around take the displacement of their neighbours.
+   !>
+   !> Vertices next to material come first, each with the mean of the neighbours that already have a displacement,
+   !> then the next ring, and so on. A part that meets no material at all stays as it is.
+   subroutine fill_void(surface, has_material)
+      type(surface_t), intent(inout) :: surface   !! `up` and `um` of vertices in a void are set
+      logical, intent(in) :: has_material(:)      !! (nv) whether a vertex has its own displacement
+      real(wp), allocatable :: total(:, :)
+      integer, allocatable :: count(:)
+      logical :: known(surface%vertex_count)
+      integer :: e, i, v, w
+
+      known = has_material
+      allocate (total(6, surface%vertex_count), count(surface%vertex_count))
+      do while (.not. all(known))
+         total = 0.0_wp
+         count = 0
+         do e = 1, surface%edge_count
+            do i = 1, 2
+               v = surface%edge(i, e)
+               w = surface%edge(3 - i, e)
+               if (known(v) .or. .not. known(w)) cycle
+               total(:, v) = total(:, v) + [surface%up(:, w), surface%um(:, w)]
+               count(v) = count(v) + 1
+            end do
+         end do
+         if (all(count == 0)) return
+         do v = 1, surface%vertex_count
+            if (count(v) == 0) cycle
+            surface%up(:, v) = total(1:3, v)/real(count(v), wp)
+            surface%um(:, v) = total(4:6, v)/real(count(v), wp)
+            known(v) = .true.
+         end do
+      end do
+   end subroutine fill_void
+
    !> Every triangle must have three known, distinct vertices and an area.
    subroutine check_triangles(x, tri, error)
       real(wp), intent(in) :: x(:, :)
@@ -150,7 +186,7 @@ contains
       allocate (edge(2, 3*surface%triangle_count), owner(2, 3*surface%triangle_count))
       allocate (surface%triangle_edge(3, surface%triangle_count))
       owner = 0
-      call clear_map(known, 2*surface%triangle_count)
+      call clear_map(known, 3*surface%triangle_count)
       do t = 1, surface%triangle_count
          do k = 1, 3
             a = surface%tri(k, t)
