@@ -21,7 +21,8 @@ module xmpm_command_line
       logical :: quiet = .false.                !! no log on standard output
    end type options_t
 
-   character(len=*), parameter :: known(9) = [character(len=12) :: '--help', '--version', '--check', &
+   character(len=*), parameter :: known(9) = [character(len=12) :: '--help', '--version', &
+      '--check', &
       '--keywords', '--quiet', '--restart', '--max-wall', '-o', '-h']
    character(len=*), parameter :: see_help = ' (xmpm3d --help lists the options)'
 
@@ -78,7 +79,7 @@ contains
          //'       mpirun -n 2 xmpm3d [options] < deck'//nl//nl &
          //'Three-dimensional material point method with cracks independent of the grid.'//nl &
          //'The deck is read from the file, or from standard input.'//nl//nl &
-         //'  --check              read and set up the deck, report its size and time step, write'//nl &
+         //'  --check              set up the deck, report its size and time step, write'//nl &
          //'                       the output of step 0, and run nothing'//nl &
          //'  --keywords           list all keywords and keys of the deck'//nl &
          //'  --keywords=markdown  the same as tables of the manual'//nl &
@@ -86,8 +87,8 @@ contains
          //'  --quiet              no log on standard output (it is in NAME.log)'//nl &
          //'  --version            version, compiler, flags and libraries'//nl &
          //'  -h, --help           this text'//nl//nl &
-         //'Exit codes: 0 finished; 2 usage or deck; 3 numerical failure; 4 files; 5 partition or MPI;'//nl &
-         //'75 stopped early with a valid checkpoint.'
+         //'Exit codes: 0 finished; 2 usage or deck; 3 numerical failure; 4 files; '//nl &
+         //'5 partition or MPI; 75 stopped early with a valid checkpoint.'
    end function help_text
 
    !> A minus alone is standard input, no option.
@@ -107,7 +108,8 @@ contains
 
       select case (before_equals(arguments(i)%s))
       case ('--restart', '--max-wall')
-         call raise(error, code_usage, "'"//before_equals(arguments(i)%s)//"' needs checkpoints, which this " &
+         call raise(error, code_usage, "'"//before_equals(arguments(i)%s) &
+            //"' needs checkpoints, which this " &
             //'version does not write: it can only run a deck from the start to its end')
          return
       end select
@@ -150,7 +152,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (has_deck) then
-         call raise(error, code_usage, "only one deck can be run, and '"//argument//"' is a second one"//see_help)
+         call raise(error, code_usage, "only one deck can be run, and '"//argument &
+            //"' is a second one"//see_help)
       else if (len_trim(argument) == 0) then
          call raise(error, code_usage, 'the name of the deck is blank'//see_help)
       else if (argument /= '-') then

@@ -1,4 +1,4 @@
-!> Strict reading of numbers: a text is a number as a whole, in full double precision, or it is refused.
+!> Strict reading of numbers: a whole text in full double precision, or refusal.
 module xmpm_numbers
    use, intrinsic :: ieee_arithmetic, only: ieee_get_halting_mode, ieee_set_halting_mode, &
       ieee_set_flag
@@ -12,7 +12,7 @@ module xmpm_numbers
 
    integer, parameter :: number_good = 0      !! the text is a number
    integer, parameter :: number_garbage = 1   !! the text is no number
-   integer, parameter :: number_range = 2     !! a number that double precision (or an integer) cannot hold
+   integer, parameter :: number_range = 2     !! a number too large or too small to hold
 
    character(len=*), parameter :: digits = '0123456789'
 

@@ -6,11 +6,13 @@ module xmpm_deck
    use xmpm_error, only: error_t
    use xmpm_keywords, only: keyword_t
    use xmpm_keywords_table, only: make_keyword_table
-   use xmpm_deck_data, only: deck_t, block_t, entry_t, count_blocks, find_block, block_named, has, given, real_of, &
-      reals_of, integer_of, text_of, texts_of, flag_of, complain, warn, problems, warnings_of
+   use xmpm_deck_data, only: deck_t, block_t, entry_t, count_blocks, find_block, block_named, &
+      has, given, real_of, reals_of, integer_of, text_of, texts_of, flag_of, complain, warn, &
+      problems, warnings_of
    use xmpm_deck_lexer, only: tokens_t, cut_into_tokens
    use xmpm_deck_parser, only: build_blocks
-   use xmpm_deck_values, only: evaluate_parameters, evaluate_entries, fill_defaults, check_required
+   use xmpm_deck_values, only: evaluate_parameters, evaluate_entries, fill_defaults, &
+      check_required
    use xmpm_deck_checks, only: check_deck, fill_dependent_defaults
    use xmpm_deck_files, only: read_deck, deck_name
    use xmpm_deck_echo, only: deck_echo
@@ -30,7 +32,7 @@ contains
    !>
    !> Traps of floating point are off meanwhile: absurd numbers must end as messages.
    subroutine parse_deck(text, name, deck, error)
-      character(len=*), intent(in) :: text                !! lines split by new_line, from read_deck or not
+      character(len=*), intent(in) :: text   !! lines split by new_line, from read_deck or not
       character(len=*), intent(in) :: name                !! file name, for messages
       type(deck_t), intent(out) :: deck                   !! with all defaults
       type(error_t), allocatable, intent(out) :: error    !! one line for each problem

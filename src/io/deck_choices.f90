@@ -1,4 +1,4 @@
-!> Checks that many keywords share: one key out of several, keys that do not belong, texts put in order.
+!> Checks that many keywords share: one key out of several, keys that do not belong.
 module xmpm_deck_choices
    use xmpm_text, only: string_t
    use xmpm_text_lists, only: append, join
@@ -16,20 +16,22 @@ contains
       type(deck_t), intent(inout) :: deck                                     !! gets the problem
       type(block_t), intent(in) :: block                                      !! with the keys
       character(len=*), intent(in) :: keys                                    !! with blanks between
-      character(len=:), allocatable, intent(out), optional :: chosen          !! the one; blank where it is not one
+      character(len=:), allocatable, intent(out), optional :: chosen   !! the one, or blank
       type(string_t), allocatable :: names(:), found(:)
       integer :: i
 
       call split_words(keys, names)
       allocate (found(0))
       do i = 1, size(names)
-         if (has(block, names(i)%s) .and. text_of(block, names(i)%s) /= 'no') call append(found, names(i)%s)
+         if (has(block, names(i)%s) .and. text_of(block, &
+            names(i)%s) /= 'no') call append(found, names(i)%s)
       end do
       if (present(chosen)) chosen = ''
       if (size(found) == 0) then
          call complain(deck, block, '', 'one of these must be given: '//join(names, ', '))
       else if (size(found) > 1) then
-         call complain(deck, block, found(2)%s, 'only one of these can be given: '//join(names, ', ') &
+         call complain(deck, block, found(2)%s, 'only one of these can be given: '//join(names, &
+            ', ') &
             //', but here are: '//join(found, ', '))
       else if (present(chosen)) then
          chosen = found(1)%s

@@ -1,10 +1,10 @@
-!> Checks of *CRACK: one shape with its keys, directions that span a plane, no crack in a symmetry plane.
+!> Checks of *CRACK: one shape with its keys, in no symmetry plane.
 module xmpm_deck_cracks
    use xmpm_kinds, only: wp
    use xmpm_text, only: string_t, to_text
    use xmpm_keywords, only: split_words
-   use xmpm_deck_data, only: deck_t, block_t, has, valid, real_of, reals_of, text_of, complain, count_blocks, &
-      find_block
+   use xmpm_deck_data, only: deck_t, block_t, has, valid, real_of, reals_of, text_of, complain, &
+      count_blocks, find_block
    use xmpm_deck_choices, only: exactly_one, refuse
    implicit none
    private
@@ -12,7 +12,8 @@ module xmpm_deck_cracks
    public :: check_crack, check_symmetry_planes
 
    character(len=*), parameter :: shapes = 'rectangle disc ellipse polygon file'
-   character(len=*), parameter :: shape_keys = 'centre along across width depth radius semi_axes points sector'
+   character(len=*), parameter :: shape_keys = &
+      'centre along across width depth radius semi_axes points sector'
 
 contains
 
@@ -69,7 +70,8 @@ contains
       else if (norm2(across) <= 0.0_wp) then
          call complain(deck, block, 'across', 'the direction has no length')
       else if (norm2(cross(along/norm2(along), across/norm2(across))) < 1.0e-6_wp) then
-         call complain(deck, block, 'across', 'it is parallel to along: the two must span the plane of the crack')
+         call complain(deck, block, 'across', &
+            'it is parallel to along: the two must span the plane of the crack')
       end if
    end subroutine check_directions
 
@@ -81,7 +83,8 @@ contains
       if (.not. valid(block, 'sector')) return
       angles = reals_of(block, 'sector')
       if (angles(2) <= angles(1) .or. angles(2) - angles(1) > 360.0_wp) &
-         call complain(deck, block, 'sector', 'it must go from a smaller to a greater angle, at most 360 degrees apart')
+         call complain(deck, block, 'sector', &
+         'it must go from a smaller to a greater angle, at most 360 degrees apart')
    end subroutine check_sector
 
    !> Corners in threes of numbers, in one plane, no two neighbours the same.
@@ -107,7 +110,8 @@ contains
       normal = normal/norm2(normal)
       do i = 1, corners
          if (abs(dot_product(n(3*i - 2:3*i) - n(1:3), normal)) > 1.0e-6_wp*size_of) then
-            call complain(deck, block, 'points', 'corner '//to_text(i)//' lies outside of the plane of the others')
+            call complain(deck, block, 'points', 'corner '//to_text(i) &
+               //' lies outside of the plane of the others')
             return
          end if
       end do
@@ -119,7 +123,8 @@ contains
       character(len=:), allocatable :: path
 
       path = text_of(block, 'file')
-      if (path(index(path, '.', back=.true.) + 1:) == 'stl' .or. path(index(path, '.', back=.true.) + 1:) == 'h5') return
+      if (path(index(path, '.', back=.true.) + 1:) == 'stl' .or. path(index(path, '.', &
+         back=.true.) + 1:) == 'h5') return
       call complain(deck, block, 'file', "'"//path//"' is neither a .stl nor a .h5 file")
    end subroutine check_file
 
@@ -134,10 +139,14 @@ contains
          do j = 1, count_blocks(deck, 'boundary')
             boundary = find_block(deck, 'boundary', j)
             if (text_of(boundary, 'type') /= 'symmetry' .or. .not. valid(boundary, 'plane')) cycle
-            if (.not. lies_in_plane(crack, text_of(boundary, 'plane'), real_of(boundary, 'plane'))) cycle
-            call complain(deck, crack, '', 'the crack lies in the symmetry plane '//text_of(boundary, 'plane')//' = ' &
-               //to_text(real_of(boundary, 'plane'))//': model both halves without that plane, or leave out the ' &
-               //'crack and hold only the uncracked part of the plane (type = roller, box, components)')
+            if (.not. lies_in_plane(crack, text_of(boundary, 'plane'), real_of(boundary, &
+               'plane'))) cycle
+            call complain(deck, crack, '', 'the crack lies in the symmetry plane ' &
+               //text_of(boundary, 'plane')//' = ' &
+               //to_text(real_of(boundary, 'plane')) &
+               //': model both halves without that plane, or leave out the ' &
+               //'crack and hold only the uncracked part of the plane (type = roller, box, ' &
+               //'components)')
          end do
       end do
    end subroutine check_symmetry_planes
@@ -153,8 +162,10 @@ contains
       if (valid(crack, 'points')) then
          lies = polygon_lies(reals_of(crack, 'points'), index('xyz', axis), value)
       else if (valid(crack, 'centre') .and. valid(crack, 'along') .and. valid(crack, 'across')) then
-         lies = plane_is(cross(reals_of(crack, 'along'), reals_of(crack, 'across')), reals_of(crack, 'centre'), &
-            maxval([real_of(crack, 'width'), real_of(crack, 'radius'), reals_of(crack, 'semi_axes')]), &
+         lies = plane_is(cross(reals_of(crack, 'along'), reals_of(crack, 'across')), &
+            reals_of(crack, 'centre'), &
+            maxval([real_of(crack, 'width'), real_of(crack, 'radius'), reals_of(crack, &
+            'semi_axes')]), &
             index('xyz', axis), value)
       end if
    end function lies_in_plane

@@ -1,4 +1,4 @@
-!> The deck as data: blocks of entries in written order, access to their values, and what is wrong with them.
+!> The deck as data: blocks of entries in written order, their values, and what is wrong.
 module xmpm_deck_data
    use xmpm_kinds, only: wp
    use xmpm_error, only: error_t, raise, code_usage
@@ -163,11 +163,13 @@ contains
       type(block_t), intent(in) :: block    !! of the deck
       character(len=*), intent(in) :: key   !! of kind real, integer or axis
       real(wp) :: value                     !! [units of the deck]
-      real(wp), allocatable :: values(:)
+      integer :: place
 
       value = 0.0_wp
-      values = reals_of(block, key)
-      if (size(values) > 0) value = values(1)
+      place = entry_place(block, key)
+      if (place == 0) return
+      if (.not. allocated(block%entries(place)%numbers)) return
+      if (size(block%entries(place)%numbers) > 0) value = block%entries(place)%numbers(1)
    end function real_of
 
    !> All numbers of a key; none where the key has none.
@@ -192,7 +194,7 @@ contains
       value = nint(real_of(block, key))
    end function integer_of
 
-   !> The (first) text of a key, also the axis of an axis and its number; blank where the key has none.
+   !> The (first) text of a key, also an axis; blank where the key has none.
    pure function text_of(block, key) result(text)
       type(block_t), intent(in) :: block    !! of the deck
       character(len=*), intent(in) :: key   !! of kind word, text or axis

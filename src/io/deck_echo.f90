@@ -2,7 +2,7 @@
 module xmpm_deck_echo
    use xmpm_text, only: to_text
    use xmpm_text_lists, only: upper
-   use xmpm_deck_data, only: deck_t, block_t, entry_t
+   use xmpm_deck_data, only: deck_t, entry_t
    implicit none
    private
 
@@ -30,7 +30,8 @@ contains
          if (len(deck%blocks(i)%name) > 0) text = text//' '//quote(deck%blocks(i)%name)
          text = text//nl
          do j = 1, size(deck%blocks(i)%entries)
-            text = text//'   '//deck%blocks(i)%entries(j)%key//' = '//values_text(deck%blocks(i)%entries(j))//nl
+            text = text//'   '//deck%blocks(i)%entries(j)%key//' = ' &
+               //values_text(deck%blocks(i)%entries(j))//nl
          end do
       end do
       text = text//'*END'//nl

@@ -5,7 +5,8 @@ module xmpm_deck_files
    use xmpm_error, only: error_t, raise, code_files
    use xmpm_text, only: string_t, to_text
    use xmpm_text_lists, only: append
-   use xmpm_deck_lexer, only: tokens_t, cut_line, marker, file_marker, fault_marker, token_keyword, token_value
+   use xmpm_deck_lexer, only: tokens_t, cut_line, marker, file_marker, fault_marker, &
+      token_keyword, token_value
    implicit none
    private
 
@@ -55,9 +56,9 @@ contains
 
    recursive subroutine add_file(path, open_files, buffer, fault)
       character(len=*), intent(in) :: path
-      type(string_t), intent(in) :: open_files(:)                    !! this file is the last of them
+      type(string_t), intent(in) :: open_files(:)   !! this file is the last of them
       type(buffer_t), intent(inout) :: buffer
-      character(len=:), allocatable, intent(inout) :: fault          !! set where it cannot be opened
+      character(len=:), allocatable, intent(inout) :: fault   !! set where it cannot be opened
       integer :: unit, status
       character(len=200) :: message
 
@@ -127,7 +128,8 @@ contains
       end if
       if (allocated(fault)) then
          buffer%length = start
-         call add_text(buffer, marker//fault_marker//"*INCLUDE '"//name//"': "//fault//new_line('a'))
+         call add_text(buffer, marker//fault_marker//"*INCLUDE '"//name//"': "//fault &
+            //new_line('a'))
       else
          call add_text(buffer, marker//file_marker//to_text(number + 1)//' ' &
             //open_files(size(open_files))%s//new_line('a'))

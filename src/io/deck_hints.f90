@@ -8,7 +8,7 @@ module xmpm_deck_hints
 
 contains
 
-   !> Fewest insertions, deletions, changes and swaps of neighbours that turn one word into the other.
+   !> Fewest insertions, deletions, changes and swaps of neighbours from one word to the other.
    pure function edit_distance(a, b) result(distance)
       character(len=*), intent(in) :: a   !! one word
       character(len=*), intent(in) :: b   !! the other
@@ -30,7 +30,7 @@ contains
       distance = d(len(a), len(b))
    end function edit_distance
 
-   !> Place of the name nearest to a word, whatever the case of its letters; 0 where there are no names.
+   !> Place of the name nearest to a word, whatever the case of its letters; 0 without names.
    pure function nearest_name(word, names) result(place)
       character(len=*), intent(in) :: word     !! what was written
       type(string_t), intent(in) :: names(:)   !! what is valid

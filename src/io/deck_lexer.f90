@@ -16,8 +16,8 @@ module xmpm_deck_lexer
    integer, parameter :: token_comma = 3     !! ,
    integer, parameter :: token_keyword = 4   !! a word behind a star at the start of a line
 
-   character(len=1), parameter :: marker = achar(1)   !! starts a line that the reader of files put in
-   character(len=1), parameter :: file_marker = 'F'   !! then 'line file': where the next line is from
+   character(len=1), parameter :: marker = achar(1)   !! starts a line put in by the reader of files
+   character(len=1), parameter :: file_marker = 'F'   !! then 'line file' of the next line
    character(len=1), parameter :: fault_marker = 'E'  !! then what could not be read at this place
    character(len=1), parameter :: tab = achar(9)
    character(len=3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
@@ -25,7 +25,7 @@ module xmpm_deck_lexer
    !> One token.
    type :: token_t
       integer :: kind = token_value          !! one of the kinds above
-      character(len=:), allocatable :: text  !! without quotes; keywords in lower case without the star
+      character(len=:), allocatable :: text  !! without quotes or star; keywords in lower case
       logical :: quoted = .false.            !! some of it was in quotes
       integer :: row = 0                     !! line counted through all included files
    end type token_t
@@ -228,7 +228,7 @@ contains
       type(deck_t), intent(inout) :: deck         !! gets the fault
       type(tokens_t), intent(inout) :: tokens     !! gets the file
       integer, intent(in) :: row
-      integer, intent(inout) :: line              !! of this row; on return of the row before the next one
+      integer, intent(inout) :: line   !! of this row; on return of the row before the next one
       integer :: blank, status, next
 
       if (text(1:1) == fault_marker) then

@@ -1,13 +1,14 @@
 !> Tokens to blocks and entries, checked against the names in the keyword table.
 module xmpm_deck_parser
-   use xmpm_text, only: string_t, lower
+   use xmpm_text, only: lower
    use xmpm_text_lists, only: append, join, upper
    use xmpm_expression, only: is_identifier
-   use xmpm_keywords, only: keyword_t, keyword_place, key_place, keyword_names, key_names, kind_flag, kind_text, &
-      kind_word, no_name, must_have_name
-   use xmpm_deck_data, only: deck_t, block_t, entry_t, note_problem, add_block, add_entry, block_named, complain, &
-      has, entry_place, find_block
-   use xmpm_deck_lexer, only: tokens_t, place_of_row, token_value, token_equals, token_comma, token_keyword
+   use xmpm_keywords, only: keyword_t, keyword_place, key_place, keyword_names, key_names, &
+      kind_flag, kind_text, kind_word, no_name, must_have_name
+   use xmpm_deck_data, only: deck_t, block_t, entry_t, note_problem, add_block, add_entry, &
+      block_named, complain, has, entry_place, find_block
+   use xmpm_deck_lexer, only: tokens_t, place_of_row, token_value, token_equals, token_comma, &
+      token_keyword
    use xmpm_deck_hints, only: did_you_mean
    use xmpm_text, only: to_text
    implicit none
@@ -59,7 +60,8 @@ contains
       else if (name == 'parameter') then
          call read_parameters(tokens, deck, place)
       else if (name == 'include') then
-         call blame(deck, tokens, start, '*INCLUDE can stand only in a deck that is read from a file')
+         call blame(deck, tokens, start, &
+            '*INCLUDE can stand only in a deck that is read from a file')
          call skip_to_keyword(tokens, place)
       else if (.not. table(found)%directive) then
          call read_data(tokens, table(found), deck, place)
@@ -90,6 +92,15 @@ contains
       call add_block(deck, block)
    end subroutine read_data
 
+   !> A value that is not the key before a '='.
+   pure function is_free_value(tokens, place) result(is)
+      type(tokens_t), intent(in) :: tokens
+      integer, intent(in) :: place
+      logical :: is
+
+      is = kind_at(tokens, place) == token_value .and. kind_at(tokens, place + 1) /= token_equals
+   end function is_free_value
+
    subroutine read_name(tokens, keyword, deck, block, place)
       type(tokens_t), intent(in) :: tokens
       type(keyword_t), intent(in) :: keyword
@@ -99,20 +110,18 @@ contains
 
       block%name = ''
       if (keyword%naming == no_name) return
-      if (kind_at(tokens, place) == token_value .and. kind_at(tokens, place + 1) /= token_equals &
-         .and. row_at(tokens, place) == block%row) then
+      if (is_free_value(tokens, place) .and. row_at(tokens, place) == block%row) then
          block%name = tokens%list(place)%text
          place = place + 1
       end if
       if (len(block%name) == 0 .and. keyword%naming == must_have_name) &
          call complain(deck, block, '', 'a name must follow the keyword on its line')
-      if (kind_at(tokens, place) /= token_value .or. kind_at(tokens, place + 1) == token_equals) return
+      if (.not. is_free_value(tokens, place)) return
       if (row_at(tokens, place) /= block%row .or. kind_at(tokens, place - 1) /= token_value) return
       if (key_place(keyword, lower(tokens%list(place)%text)) > 0) return
       call complain(deck, block, '', "'"//tokens%list(place)%text &
          //"' follows the name: a name with blanks must be in quotes")
-      do while (kind_at(tokens, place) == token_value .and. kind_at(tokens, place + 1) /= token_equals &
-         .and. row_at(tokens, place) == block%row)
+      do while (is_free_value(tokens, place) .and. row_at(tokens, place) == block%row)
          place = place + 1
       end do
    end subroutine read_name
@@ -128,14 +137,16 @@ contains
       twin = 0
       if (.not. keyword%repeatable) then
          first = find_block(deck, block%keyword, 1)
-         if (first%line > 0) call complain(deck, block, '', 'only one is allowed, and the first is at ' &
+         if (first%line > 0) call complain(deck, block, '', &
+            'only one is allowed, and the first is at ' &
             //first%file//':'//to_text(first%line))
       else if (len(block%name) > 0) then
          twin = block_named(deck, block%keyword, block%name)
       end if
       if (twin == 0) return
       first = find_block(deck, block%keyword, twin)
-      call complain(deck, block, '', 'the name is already taken at '//first%file//':'//to_text(first%line))
+      call complain(deck, block, '', 'the name is already taken at '//first%file//':' &
+         //to_text(first%line))
    end subroutine check_twin
 
    !> `key = values`, or a flag.
@@ -189,7 +200,8 @@ contains
       type(keyword_t), intent(in) :: keyword
 
       if (size(keyword%keys) == 0) then
-         call blame(deck, tokens, place, '*'//upper(trim(keyword%name))//" takes no keys, but here is '" &
+         call blame(deck, tokens, place, '*'//upper(trim(keyword%name)) &
+            //" takes no keys, but here is '" &
             //tokens%list(place)%text//"'")
       else if (is_identifier(tokens%list(place)%text)) then
          call blame(deck, tokens, place, "unknown key '"//tokens%list(place)%text//"' of *" &
@@ -269,7 +281,8 @@ contains
       count = 0
       last = first - 1
       do while (last < tokens%count)
-         if (kind_at(tokens, last + 1) /= token_value .and. kind_at(tokens, last + 1) /= token_comma) return
+         if (kind_at(tokens, last + 1) /= token_value .and. kind_at(tokens, &
+            last + 1) /= token_comma) return
          if (kind_at(tokens, last + 2) == token_equals) return
          if (kind_at(tokens, last + 1) == token_value) then
             if (is_flag(tokens, keyword, last + 1) .and. ends_at_flag(keyword, found, count)) return
@@ -312,7 +325,8 @@ contains
 
       if (has(block, entry%key) .and. .not. repeatable) then
          associate (first => block%entries(entry_place(block, entry%key)))
-            call note_problem(deck, entry%row, entry%file//':'//to_text(entry%line)//": '"//entry%key &
+            call note_problem(deck, entry%row, entry%file//':'//to_text(entry%line)//": '" &
+               //entry%key &
                //"' is given twice, first at "//first%file//':'//to_text(first%line))
          end associate
       else
@@ -329,10 +343,12 @@ contains
 
       do while (place <= tokens%count)
          if (kind_at(tokens, place) == token_keyword) exit
-         if (kind_at(tokens, place) == token_value .and. kind_at(tokens, place + 1) == token_equals) then
+         if (kind_at(tokens, place) == token_value .and. kind_at(tokens, &
+            place + 1) == token_equals) then
             entry = entry_t()
             call start_entry(tokens, place, entry)
-            if (kind_at(tokens, place + 2) == token_value .and. kind_at(tokens, place + 3) /= token_equals) then
+            if (kind_at(tokens, place + 2) == token_value .and. kind_at(tokens, &
+               place + 3) /= token_equals) then
                call append(entry%texts, tokens%list(place + 2)%text)
                entry%quoted = [tokens%list(place + 2)%quoted]
                place = place + 3
@@ -345,7 +361,8 @@ contains
          else if (kind_at(tokens, place) == token_comma) then
             place = place + 1
          else
-            call blame(deck, tokens, place, "'"//tokens%list(place)%text//"' stands where 'name = expression' " &
+            call blame(deck, tokens, place, "'"//tokens%list(place)%text &
+               //"' stands where 'name = expression' " &
                //'must be; blanks may stand only inside parentheses')
             place = place + 1
             call skip_values(tokens, place)

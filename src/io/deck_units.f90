@@ -1,4 +1,4 @@
-!> What the numbers of a deck mean in SI units, by its *UNITS; nothing is ever converted for the run itself.
+!> What the numbers of a deck mean in SI units, by its *UNITS; the run converts nothing.
 module xmpm_deck_units
    use xmpm_kinds, only: wp
    use xmpm_deck_data, only: deck_t, block_t, find_block, text_of
@@ -7,7 +7,8 @@ module xmpm_deck_units
 
    public :: si_factor, unit_text, sound_speed
 
-   character(len=12), parameter :: dimensions(10) = [character(len=12) :: 'length', 'mass', 'time', 'velocity', &
+   character(len=12), parameter :: dimensions(10) = [character(len=12) :: 'length', 'mass', &
+      'time', 'velocity', &
       'acceleration', 'rate', 'density', 'stress', 'toughness', 'force']
 
    !> Twice the powers of length, mass and time in each dimension.
@@ -16,7 +17,7 @@ module xmpm_deck_units
 
 contains
 
-   !> What a number of a dimension must be multiplied with to be in SI units; 1 for an unknown dimension.
+   !> Factor from the units of the deck to SI units; 1 for an unknown dimension.
    pure function si_factor(deck, dimension) result(factor)
       type(deck_t), intent(in) :: deck             !! with its *UNITS filled in
       character(len=*), intent(in) :: dimension    !! for example 'stress'
@@ -26,15 +27,17 @@ contains
       integer :: i
 
       units = find_block(deck, 'units', 1)
-      base = [length_in_metres(text_of(units, 'length')), mass_in_kilograms(text_of(units, 'mass')), &
+      base = [length_in_metres(text_of(units, 'length')), mass_in_kilograms(text_of(units, &
+         'mass')), &
          time_in_seconds(text_of(units, 'time'))]
       factor = 1.0_wp
       do i = 1, size(dimensions)
-         if (dimensions(i) == dimension) factor = product(base**(powers(:, i)/2)*sqrt(base)**mod(powers(:, i), 2))
+         if (dimensions(i) == dimension) factor = product(base**(powers(:, &
+            i)/2)*sqrt(base)**mod(powers(:, i), 2))
       end do
    end function si_factor
 
-   !> The unit of a dimension in the units of the deck, for example 'g/(mm ms2)'; 'deg' for an angle.
+   !> The unit of a dimension in the deck, for example 'g/(mm ms2)'; 'deg' for an angle.
    pure function unit_text(deck, dimension) result(text)
       type(deck_t), intent(in) :: deck             !! with its *UNITS filled in
       character(len=*), intent(in) :: dimension    !! for example 'stress'
@@ -42,7 +45,8 @@ contains
       type(block_t) :: units
 
       units = find_block(deck, 'units', 1)
-      text = product_text(text_of(units, 'length'), text_of(units, 'mass'), text_of(units, 'time'), dimension)
+      text = product_text(text_of(units, 'length'), text_of(units, 'mass'), text_of(units, &
+         'time'), dimension)
    end function unit_text
 
    pure function product_text(l, m, t, dimension) result(text)

@@ -7,7 +7,8 @@ module xmpm_deck_values
    use xmpm_expression, only: variables_t, evaluate, define, is_reserved, is_identifier
    use xmpm_keywords, only: keyword_t, key_t, keyword_place, key_place, split_words, in_range, &
       kind_real, kind_integer, kind_word, kind_text, kind_flag, kind_axis
-   use xmpm_deck_data, only: deck_t, block_t, entry_t, note_problem, has, add_block, add_entry, count_blocks, complain
+   use xmpm_deck_data, only: deck_t, block_t, entry_t, note_problem, has, add_block, add_entry, &
+      count_blocks, complain
    use xmpm_deck_hints, only: did_you_mean
    implicit none
    private
@@ -100,7 +101,8 @@ contains
       if (allocated(error)) then
          call blame(deck, definition, 1, error%message)
       else
-         call blame(deck, definition, 1, 'it depends on itself or on another parameter without a value')
+         call blame(deck, definition, 1, &
+            'it depends on itself or on another parameter without a value')
       end if
    end subroutine blame_pending
 
@@ -166,7 +168,8 @@ contains
       else
          allowed = to_text(least)//' to '//to_text(most)
       end if
-      call blame(deck, entry, 0, 'it needs '//allowed//' '//trim(merge('values', 'value ', most > 1)) &
+      call blame(deck, entry, 0, 'it needs '//allowed//' '//trim(merge('values', 'value ', &
+         most > 1)) &
          //' and got '//to_text(size(entry%texts))//': '//join(entry%texts, ' '))
       entry%valid = .false.
    end subroutine check_count
@@ -215,7 +218,8 @@ contains
       if (entry%quoted(i)) then
          allocate (error)
          error%message = 'a text in quotes stands where a number must be'
-      else if (scan(entry%texts(i)%s, '+-*/^') == 1 .and. verify(entry%texts(i)%s, '+-*/^') == 0) then
+      else if (scan(entry%texts(i)%s, '+-*/^') == 1 .and. verify(entry%texts(i)%s, &
+         '+-*/^') == 0) then
          allocate (error)
          error%message = 'an expression has no blanks outside its parentheses'
       else
@@ -254,13 +258,23 @@ contains
          entry%texts(i)%s = lower(entry%texts(i)%s)
          known = .false.
          do j = 1, size(allowed)
-            known = known .or. (allowed(j)%s == entry%texts(i)%s .and. len(allowed(j)%s) == len(entry%texts(i)%s))
+            known = known .or. same(allowed(j)%s, entry%texts(i)%s)
          end do
          if (known) cycle
-         call blame(deck, entry, i, 'is not one of '//join(allowed, ', ')//did_you_mean(entry%texts(i)%s, allowed))
+         call blame(deck, entry, i, 'is not one of '//join(allowed, ', ') &
+            //did_you_mean(entry%texts(i)%s, allowed))
          entry%valid = .false.
       end do
    end subroutine check_words
+
+   !> Equal texts of equal length (Fortran would pad the shorter with blanks).
+   pure function same(a, b)
+      character(len=*), intent(in) :: a
+      character(len=*), intent(in) :: b
+      logical :: same
+
+      same = len(a) == len(b) .and. a == b
+   end function same
 
    subroutine read_flag(deck, entry)
       type(deck_t), intent(inout) :: deck
@@ -308,7 +322,8 @@ contains
       do i = 1, size(deck%blocks)
          associate (keyword => table(keyword_place(table, deck%blocks(i)%keyword)))
             do j = 1, size(keyword%keys)
-               if (keyword%keys(j)%default == '' .or. has(deck%blocks(i), trim(keyword%keys(j)%name))) cycle
+               if (keyword%keys(j)%default == '' .or. has(deck%blocks(i), &
+                  trim(keyword%keys(j)%name))) cycle
                call add_entry(deck%blocks(i)%entries, default_entry(keyword%keys(j)))
             end do
          end associate
@@ -338,7 +353,8 @@ contains
       do i = 1, size(table)
          if (.not. table(i)%required .or. table(i)%directive) cycle
          if (count_blocks(deck, trim(table(i)%name)) > 0) cycle
-         call note_problem(deck, huge(i), deck%name//': there is no *'//upper(trim(table(i)%name))//' ('// &
+         call note_problem(deck, huge(i), deck%name//': there is no *' &
+            //upper(trim(table(i)%name))//' ('// &
             trim(table(i)%meaning)//')')
       end do
       do i = 1, size(deck%blocks)

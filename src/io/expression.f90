@@ -1,4 +1,4 @@
-!> Arithmetic in the deck: numbers, names, + - * / ** ^, parentheses and the usual functions (radians).
+!> Arithmetic in the deck: numbers, names, + - * / ** ^, parentheses, functions (radians).
 module xmpm_expression
    use, intrinsic :: ieee_arithmetic, only: ieee_get_halting_mode, ieee_set_halting_mode, &
       ieee_set_flag
@@ -233,7 +233,8 @@ contains
       end if
       number = slice(reader%text, reader%place, reader%place + length - 1)
       call parse_real(number, value, status)
-      if (status /= number_good) call blame(reader, "'"//number//"' is out of the range of double precision")
+      if (status /= number_good) call blame(reader, "'"//number &
+         //"' is out of the range of double precision")
       reader%place = reader%place + length
    end subroutine read_number
 
@@ -368,7 +369,8 @@ contains
 
       does = .false.
       if (next(reader) == '') return
-      does = index(reader%text(reader%place + verify(reader%text(reader%place:), blanks) - 1:), text) == 1
+      does = index(reader%text(reader%place + verify(reader%text(reader%place:), blanks) - 1:), &
+         text) == 1
    end function starts_with
 
    !> Go over blanks, then over `count` characters, then over blanks.

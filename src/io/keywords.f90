@@ -44,7 +44,7 @@ module xmpm_keywords
       integer :: naming = no_name           !! whether a name follows
       logical :: required = .false.         !! at least one must be in the deck
       logical :: repeatable = .false.       !! may be in the deck more than once
-      logical :: always = .false.           !! put into the deck with its defaults where it is not written
+      logical :: always = .false.   !! put into the deck with its defaults where it is not written
       logical :: directive = .false.        !! parameter, include or end: no block of data
       character(len=120) :: meaning = ''    !! one line
       type(key_t), allocatable :: keys(:)   !! in the order of the documentation

@@ -1,7 +1,7 @@
 !> The one table of all keywords and keys: the parser, `--keywords` and the manual are made from it.
 module xmpm_keywords_table
-   use xmpm_keywords, only: keyword_t, key_t, add_keyword, add_key, kind_integer, kind_word, kind_text, &
-      kind_flag, kind_axis, may_have_name, must_have_name
+   use xmpm_keywords, only: keyword_t, key_t, add_keyword, add_key, kind_integer, kind_word, &
+      kind_text, kind_flag, kind_axis, may_have_name, must_have_name
    implicit none
    private
 
@@ -35,7 +35,8 @@ contains
 
       call add_keyword(t, keyword_t(name='units', always=.true., &
          meaning='consistent units of all numbers; nothing is ever converted'))
-      call add_key(t, key_t(name='length', kind=kind_word, default='m', words='m mm cm um km in ft', &
+      call add_key(t, key_t(name='length', kind=kind_word, default='m', &
+         words='m mm cm um km in ft', &
          meaning='unit of length'))
       call add_key(t, key_t(name='mass', kind=kind_word, default='kg', words='kg g t mg', &
          meaning='unit of mass'))
@@ -48,7 +49,7 @@ contains
          meaning='another file whose lines stand here; its path is relative to this file'))
 
       call add_keyword(t, keyword_t(name='grid', required=.true., &
-         meaning='background grid of cubic cells; it is unbounded and costs only where material is'))
+         meaning='background grid of cubic cells, without bounds; it costs only where material is'))
       call add_key(t, key_t(name='size', dimension='length', range=positive, required=.true., &
          meaning='edge of a cell'))
       call add_key(t, key_t(name='shape', kind=kind_word, default='linear', words='linear gimp', &
@@ -74,7 +75,8 @@ contains
          meaning='fracture toughness K_Ic'))
 
       call add_keyword(t, keyword_t(name='body', naming=must_have_name, required=.true., &
-         repeatable=.true., meaning='a body of particles: primitives added and cut out in written order, or a file'))
+         repeatable=.true., &
+         meaning='particles from a file, or from primitives added and cut out in written order'))
       call add_key(t, key_t(name='material', kind=kind_text, required=.true., &
          meaning='name of a *MATERIAL'))
       call add_key(t, key_t(name='particles', kind=kind_integer, range='[1, 4]', default='2', &
@@ -84,18 +86,22 @@ contains
          meaning='particle file (HDF5) instead of primitives'))
       call add_key(t, key_t(name='part', kind=kind_text, &
          meaning='name of the body in the particle file; all its particles where not given'))
-      call add_key(t, key_t(name='velocity', least=3, most=3, dimension='velocity', default='0 0 0', &
+      call add_key(t, key_t(name='velocity', least=3, most=3, dimension='velocity', &
+         default='0 0 0', &
          meaning='initial velocity: x y z'))
       call add_key(t, key_t(name='spin', least=3, most=3, dimension='rate', default='0 0 0', &
          meaning='initial angular velocity: x y z'))
-      call add_key(t, key_t(name='spin_centre', least=3, most=3, dimension='length', default='0 0 0', &
+      call add_key(t, key_t(name='spin_centre', least=3, most=3, dimension='length', &
+         default='0 0 0', &
          meaning='point that the spin turns about: x y z'))
-      call add_key(t, key_t(name='stress', least=6, most=6, dimension='stress', default='0 0 0 0 0 0', &
+      call add_key(t, key_t(name='stress', least=6, most=6, dimension='stress', &
+         default='0 0 0 0 0 0', &
          meaning='uniform initial stress: xx yy zz xy yz xz'))
 
       call add_keyword(t, keyword_t(name='set', naming=must_have_name, repeatable=.true., &
          meaning='a named set of particles: those of a body in a box at the start'))
-      call add_key(t, key_t(name='body', kind=kind_text, required=.true., meaning='name of a *BODY'))
+      call add_key(t, key_t(name='body', kind=kind_text, required=.true., &
+         meaning='name of a *BODY'))
       call add_key(t, key_t(name='box', least=6, most=6, dimension='length', required=.true., &
          meaning='corners: x0 y0 z0 x1 y1 z1'))
    end subroutine add_materials_and_bodies
@@ -103,7 +109,8 @@ contains
    !> The shapes of bodies, each with its twin that cuts the shape out.
    pure subroutine add_primitives(t)
       type(keyword_t), intent(inout) :: t(:)
-      character(len=8), parameter :: shape(4) = [character(len=8) :: 'box', 'cylinder', 'tube', 'sphere']
+      character(len=8), parameter :: shape(4) = [character(len=8) :: 'box', 'cylinder', 'tube', &
+         'sphere']
       integer, parameter :: count(4) = [6, 7, 8, 4]
       character(len=48), parameter :: values(4) = [character(len=48) :: &
          'corners x0 y0 z0 x1 y1 z1', 'ends of the axis x0 y0 z0 x1 y1 z1 and radius', &
@@ -116,7 +123,8 @@ contains
       end do
       do i = 1, size(shape)
          call add_key(t, key_t(name='without_'//shape(i), least=count(i), most=count(i), &
-            dimension='length', repeatable=.true., meaning='cuts out a '//trim(shape(i))//': '//values(i)))
+            dimension='length', repeatable=.true., meaning='cuts out a '//trim(shape(i))//': ' &
+            //values(i)))
       end do
    end subroutine add_primitives
 
@@ -125,28 +133,38 @@ contains
 
       call add_keyword(t, keyword_t(name='crack', naming=must_have_name, repeatable=.true., &
          meaning='a crack surface: one shape, or a file of triangles'))
-      call add_key(t, key_t(name='rectangle', kind=kind_flag, meaning='shape with centre, along, across, width, depth'))
-      call add_key(t, key_t(name='disc', kind=kind_flag, meaning='shape with centre, along, across, radius'))
-      call add_key(t, key_t(name='ellipse', kind=kind_flag, meaning='shape with centre, along, across, semi_axes'))
+      call add_key(t, key_t(name='rectangle', kind=kind_flag, &
+         meaning='shape with centre, along, across, width, depth'))
+      call add_key(t, key_t(name='disc', kind=kind_flag, &
+         meaning='shape with centre, along, across, radius'))
+      call add_key(t, key_t(name='ellipse', kind=kind_flag, &
+         meaning='shape with centre, along, across, semi_axes'))
       call add_key(t, key_t(name='polygon', kind=kind_flag, meaning='plane shape with points'))
-      call add_key(t, key_t(name='file', kind=kind_text, meaning='triangle file instead of a shape: .stl or .h5'))
-      call add_key(t, key_t(name='centre', least=3, most=3, dimension='length', meaning='centre of the shape: x y z'))
+      call add_key(t, key_t(name='file', kind=kind_text, &
+         meaning='triangle file instead of a shape: .stl or .h5'))
+      call add_key(t, key_t(name='centre', least=3, most=3, dimension='length', &
+         meaning='centre of the shape: x y z'))
       call add_key(t, key_t(name='along', least=3, most=3, &
          meaning='direction of the width or of the first semi-axis: x y z'))
       call add_key(t, key_t(name='across', least=3, most=3, &
          meaning='direction of the depth or of the second semi-axis; the normal is along x across'))
-      call add_key(t, key_t(name='width', dimension='length', range=positive, meaning='of the rectangle, along'))
-      call add_key(t, key_t(name='depth', dimension='length', range=positive, meaning='of the rectangle, across'))
-      call add_key(t, key_t(name='radius', dimension='length', range=positive, meaning='of the disc'))
+      call add_key(t, key_t(name='width', dimension='length', range=positive, &
+         meaning='of the rectangle, along'))
+      call add_key(t, key_t(name='depth', dimension='length', range=positive, &
+         meaning='of the rectangle, across'))
+      call add_key(t, key_t(name='radius', dimension='length', range=positive, &
+         meaning='of the disc'))
       call add_key(t, key_t(name='semi_axes', least=2, most=2, dimension='length', range=positive, &
          meaning='of the ellipse, along and across'))
       call add_key(t, key_t(name='points', least=9, most=any_number, dimension='length', &
          meaning='corners of the polygon, in order: x y z x y z ...'))
-      call add_key(t, key_t(name='sector', least=2, most=2, dimension='angle', range='[-360, 360]', &
+      call add_key(t, key_t(name='sector', least=2, most=2, dimension='angle', &
+         range='[-360, 360]', &
          meaning='part of a disc or an ellipse: from and to, in degrees from along towards across'))
       call add_key(t, key_t(name='element', dimension='length', range=positive, &
          meaning='edge of the triangles; the cell size where not given'))
-      call add_key(t, key_t(name='front', kind=kind_word, default='graded', words='graded node full cut', &
+      call add_key(t, key_t(name='front', kind=kind_word, default='graded', &
+         words='graded node full cut', &
          meaning='rule by which nodes near the front are enriched'))
       call add_key(t, key_t(name='ramp', range='(0, 4]', default='0.5', &
          meaning='graded front: length over which the weight falls from 1 to 0, in cells'))
@@ -165,14 +183,19 @@ contains
       call add_keyword(t, keyword_t(name='load', naming=may_have_name, repeatable=.true., &
          meaning='a traction or a pressure on a face of a body or on a set'))
       call add_key(t, key_t(name='face', kind=kind_text, &
-         meaning='BODY:FACE with the face +x -x +y -y +z -z, side (lateral surface) or inside (of a tube)'))
-      call add_key(t, key_t(name='set', kind=kind_text, meaning='name of a *SET, loaded as a surface layer'))
-      call add_key(t, key_t(name='traction', least=3, most=3, dimension='stress', meaning='force on an area: x y z'))
-      call add_key(t, key_t(name='pressure', dimension='stress', meaning='against the outer normal of the face'))
+         meaning='BODY:FACE, with +x -x +y -y +z -z, side (lateral surface) or inside (of a tube)'))
+      call add_key(t, key_t(name='set', kind=kind_text, &
+         meaning='name of a *SET, loaded as a surface layer'))
+      call add_key(t, key_t(name='traction', least=3, most=3, dimension='stress', &
+         meaning='force on an area: x y z'))
+      call add_key(t, key_t(name='pressure', dimension='stress', &
+         meaning='against the outer normal of the face'))
       call add_time_keys(t)
 
-      call add_keyword(t, keyword_t(name='gravity', repeatable=.true., meaning='a body force on all particles'))
-      call add_key(t, key_t(name='acceleration', least=3, most=3, dimension='acceleration', required=.true., &
+      call add_keyword(t, keyword_t(name='gravity', repeatable=.true., &
+         meaning='a body force on all particles'))
+      call add_key(t, key_t(name='acceleration', least=3, most=3, dimension='acceleration', &
+         required=.true., &
          meaning='force on a mass: x y z'))
       call add_time_keys(t)
 
@@ -182,13 +205,14 @@ contains
          meaning='nodes on and beyond a plane: x, y or z and its coordinate'))
       call add_key(t, key_t(name='box', least=6, most=6, dimension='length', &
          meaning='nodes in a box: x0 y0 z0 x1 y1 z1'))
-      call add_key(t, key_t(name='set', kind=kind_text, meaning='nodes around the particles of a *SET'))
+      call add_key(t, key_t(name='set', kind=kind_text, &
+         meaning='nodes around the particles of a *SET'))
       call add_key(t, key_t(name='type', kind=kind_word, required=.true., &
          words='fixed roller symmetry velocity acceleration', meaning='what is prescribed'))
       call add_key(t, key_t(name='components', kind=kind_text, most=3, &
          meaning='letters out of x y z that are prescribed; all where not given'))
       call add_key(t, key_t(name='value', least=1, most=3, &
-         meaning='prescribed velocity or acceleration: x y z, or one number for each of the components'))
+         meaning='velocity or acceleration: x y z, or one number for each of the components'))
       call add_time_keys(t)
    end subroutine add_loads
 
@@ -207,8 +231,10 @@ contains
    pure subroutine add_solution(t)
       type(keyword_t), allocatable, intent(inout) :: t(:)
 
-      call add_keyword(t, keyword_t(name='time', required=.true., meaning='length of the run and how it is stepped'))
-      call add_key(t, key_t(name='end', dimension='time', range=positive, required=.true., meaning='end of the run'))
+      call add_keyword(t, keyword_t(name='time', required=.true., &
+         meaning='length of the run and how it is stepped'))
+      call add_key(t, key_t(name='end', dimension='time', range=positive, required=.true., &
+         meaning='end of the run'))
       call add_key(t, key_t(name='scheme', kind=kind_word, default='musl', words='musl usf usl', &
          meaning='order of the stages in a step'))
       call add_key(t, key_t(name='cfl', range=positive, default='0.5', &
@@ -220,7 +246,8 @@ contains
       call add_key(t, key_t(name='steps', kind=kind_integer, range='[0, inf)', &
          meaning='most steps to take; the run ends at whichever comes first'))
 
-      call add_keyword(t, keyword_t(name='damping', always=.true., meaning='damping of the motion; none by default'))
+      call add_keyword(t, keyword_t(name='damping', always=.true., &
+         meaning='damping of the motion; none by default'))
       call add_key(t, key_t(name='viscous', dimension='rate', range=not_negative, default='0', &
          meaning='nodal viscous damping: part of the momentum lost in a unit of time'))
       call add_key(t, key_t(name='pic', dimension='rate', range=not_negative, default='0', &
@@ -229,22 +256,26 @@ contains
          meaning='end of the damping; the whole run where not given'))
 
       call add_keyword(t, keyword_t(name='relax', &
-         meaning='bring the bodies to rest under the loads before t = 0, then release the dynamics'))
-      call add_key(t, key_t(name='method', kind=kind_word, default='kinetic', words='kinetic viscous', &
+         meaning='bodies come to rest under the loads before t = 0; then dynamics are released'))
+      call add_key(t, key_t(name='method', kind=kind_word, default='kinetic', &
+         words='kinetic viscous', &
          meaning='kinetic: stop all motion at each peak of kinetic energy'))
-      call add_key(t, key_t(name='rate', dimension='rate', range=positive, meaning='of viscous relaxation'))
+      call add_key(t, key_t(name='rate', dimension='rate', range=positive, &
+         meaning='of viscous relaxation'))
       call add_key(t, key_t(name='residual', range='(0, 1)', default='1e-4', &
          meaning='force out of balance, over the applied force, at which the bodies are at rest'))
       call add_key(t, key_t(name='limit', dimension='time', range=positive, required=.true., &
          meaning='longest time to relax; not to reach the residual by then is a failure'))
 
-      call add_keyword(t, keyword_t(name='health', always=.true., meaning='limits at which a run is given up'))
+      call add_keyword(t, keyword_t(name='health', always=.true., &
+         meaning='limits at which a run is given up'))
       call add_key(t, key_t(name='energy', range='[0, inf)', default='0.1', &
          meaning='largest error of the energy balance, as a part of the energy; 0 for no limit'))
       call add_key(t, key_t(name='smallest_step', range='[0, 1)', default='1e-3', &
          meaning='smallest time step, as a part of the first'))
 
-      call add_keyword(t, keyword_t(name='partition', always=.true., meaning='division of the work among ranks'))
+      call add_keyword(t, keyword_t(name='partition', always=.true., &
+         meaning='division of the work among ranks'))
       call add_key(t, key_t(name='imbalance', range='(1, inf)', default='1.2', &
          meaning='most particles of a rank over the mean, at which the work is divided anew'))
    end subroutine add_solution
@@ -252,16 +283,19 @@ contains
    pure subroutine add_results(t)
       type(keyword_t), allocatable, intent(inout) :: t(:)
 
-      call add_keyword(t, keyword_t(name='output', always=.true., meaning='what is written, and how often'))
+      call add_keyword(t, keyword_t(name='output', always=.true., &
+         meaning='what is written, and how often'))
       call add_key(t, key_t(name='every', dimension='time', range=positive, &
          meaning='interval of the ParaView files; start and end of the run where not given'))
-      call add_key(t, key_t(name='particles', kind=kind_word, most=any_number, default='displacement velocity stress', &
-         words='displacement gradient velocity stress energy material body psi phi side id rank none', &
+      call add_key(t, key_t(name='particles', kind=kind_word, most=any_number, &
+         default='displacement velocity stress', &
+         words='displacement gradient velocity stress energy material body psi phi side '// &
+         'id rank none', &
          meaning='fields of the particles'))
       call add_key(t, key_t(name='crack', kind=kind_word, most=any_number, default='opening', &
          words='opening displacement normal none', meaning='fields of the crack surfaces'))
       call add_key(t, key_t(name='history', dimension='time', range=positive, &
-         meaning='interval of the rows of the energy and probe tables; that of every where not given'))
+         meaning='interval of the rows of energy and probe tables; that of every where not given'))
 
       call add_keyword(t, keyword_t(name='probe', naming=must_have_name, repeatable=.true., &
          meaning='a quantity written over time: at a point, through a section or from a boundary'))

@@ -2,8 +2,8 @@
 module xmpm_keywords_text
    use xmpm_text, only: string_t, to_text
    use xmpm_text_lists, only: join, upper
-   use xmpm_keywords, only: keyword_t, key_t, split_words, kind_integer, kind_word, kind_text, kind_flag, &
-      kind_axis, no_name, may_have_name, must_have_name
+   use xmpm_keywords, only: keyword_t, key_t, split_words, kind_integer, kind_word, kind_text, &
+      kind_flag, kind_axis, may_have_name, must_have_name
    use xmpm_keywords_table, only: make_keyword_table
    implicit none
    private
@@ -77,13 +77,16 @@ contains
       character(len=:), allocatable :: text
       integer :: i
 
-      text = '### `*'//upper(trim(keyword%name))//name_text(keyword)//'`'//nl//nl//capital(trim(keyword%meaning)) &
+      text = '### `*'//upper(trim(keyword%name))//name_text(keyword)//'`'//nl//nl &
+         //capital(trim(keyword%meaning)) &
          //'. '//capital(how_often(keyword))//'.'//nl
       if (size(keyword%keys) == 0) return
-      text = text//nl//'| key | values | unit | range | default | meaning |'//nl//'|---|---|---|---|---|---|'//nl
+      text = text//nl//'| key | values | unit | range | default | meaning |'//nl &
+         //'|---|---|---|---|---|---|'//nl
       do i = 1, size(keyword%keys)
          associate (key => keyword%keys(i))
-            text = text//'| `'//trim(key%name)//'` | '//values_text(key)//' | '//trim(key%dimension)//' | ' &
+            text = text//'| `'//trim(key%name)//'` | '//values_text(key)//' | ' &
+               //trim(key%dimension)//' | ' &
                //trim(key%range)//' | '//default_text(key)//' | '//trim(key%meaning)
             if (key%repeatable) text = text//' (may be repeated)'
             text = text//' |'//nl
