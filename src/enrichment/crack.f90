@@ -1,0 +1,343 @@
+!> A crack in the material: its surface, how the particles near it know it, and its motion.
+module xmpm_crack
+   use xmpm_kinds, only: wp
+   use xmpm_text, only: to_text
+   use xmpm_error, only: error_t, raise, code_numerics
+   use xmpm_communicator, only: comm_t, sum_all, max_all
+   use xmpm_lattice, only: lattice_t, bin_of, bin_corner, block_of, local_bin, gimp_shape, &
+      stencil_offsets, bins_per_block
+   use xmpm_blocks, only: local_block, owner_of
+   use xmpm_grid, only: grid_t
+   use xmpm_storage, only: particles_t, attach, bin_of_chunk, n_near, near_crack, near_side, &
+      near_psi, near_phi, near_jump, near_slope, c_x
+   use xmpm_linear_kernels, only: weights_linear
+   use xmpm_gimp_kernels, only: weights_gimp
+   use xmpm_sided, only: sided_t
+   use xmpm_loads, only: rows_of_bin
+   use xmpm_surface, only: surface_t, refresh_geometry, fill_void
+   use xmpm_surface_index, only: surface_index_t, nearest_t, build_index, refresh_index, &
+      nearest_on_surface
+   use xmpm_front, only: front_t, front_test_points, mark_front, refresh_front, vertex_phi, &
+      beyond_reach
+   use xmpm_level_sets, only: level_sets_at
+   use xmpm_ramp, only: jump_weight
+   implicit none
+   private
+
+   public :: crack_t, start_crack, find_near, advance_crack, gather_crack, has_drifted, near_reach
+   public :: rule_graded, rule_node, rule_full, rule_cut
+
+   integer, parameter :: rule_graded = 1   !! H falls from 1 to 0 over a ramp at the front
+   integer, parameter :: rule_node = 2     !! nodes well behind the front
+   integer, parameter :: rule_full = 3     !! nodes of cells that are cut all through
+   integer, parameter :: rule_cut = 4      !! nodes of every cell that the crack touches
+
+   real(wp), parameter :: drift = 0.02_wp  !! relative motion after which level sets are renewed [cells]
+
+   !> One crack.
+   type :: crack_t
+      character(len=:), allocatable :: name      !! from the deck
+      type(surface_t) :: surface                 !! triangles, replicated on all ranks
+      type(surface_index_t) :: index             !! finds the nearest triangle
+      type(front_t) :: front                     !! edges inside the material
+      integer :: rule = rule_graded              !! which nodes are split near the front
+      real(wp) :: ramp = 0.5_wp                  !! length of the ramp [cells]
+      real(wp) :: ramp_end = 0.4_wp              !! where it ends ahead of the front [cells]
+      logical, allocatable :: mine(:)            !! (nv) vertices that this rank moves
+      logical, allocatable :: material(:)        !! (nv) whether there was mass around
+      real(wp), allocatable :: weight(:)         !! (nv) H at the vertices
+      real(wp), allocatable :: evaluated(:, :)   !! (3,nv) vertices when level sets were last found
+      logical :: stale = .false.                 !! a vertex left the blocks of its rank
+   end type crack_t
+
+contains
+
+   !> Find the fronts of a new crack and who moves its vertices. Collective.
+   subroutine start_crack(crack, comm, grid, p)
+      type(crack_t), intent(inout) :: crack    !! surface and rule are given
+      type(comm_t), intent(in) :: comm
+      type(grid_t), intent(in) :: grid
+      type(particles_t), intent(in) :: p
+      real(wp), allocatable :: points(:, :), full(:)
+      integer :: i, b, bin(3)
+
+      call build_index(crack%surface, crack%index)
+      call front_test_points(crack%surface, grid%lattice%size, points)
+      allocate (full(size(points, 2)), source=0.0_wp)
+      do i = 1, size(full)
+         bin = bin_of(grid%lattice, points(:, i))
+         b = local_block(grid%blocks, block_of(bin))
+         if (b == 0) cycle
+         if (p%head(local_bin(bin), b) > 0) full(i) = 1
+      end do
+      call max_all(comm, full)
+      call mark_front(crack%surface, full > 0.5_wp, crack%front)
+      allocate (crack%material(crack%surface%vertex_count), source=.true.)
+      allocate (crack%weight(crack%surface%vertex_count))
+      crack%evaluated = crack%surface%x
+      call take_vertices(crack, comm%rank, grid)
+      call weigh_vertices(crack, grid%lattice%size)
+   end subroutine start_crack
+
+   !> Which vertices this rank moves: those in its blocks.
+   subroutine take_vertices(crack, rank, grid)
+      type(crack_t), intent(inout) :: crack
+      integer, intent(in) :: rank
+      type(grid_t), intent(in) :: grid
+      integer :: v
+
+      if (.not. allocated(crack%mine)) allocate (crack%mine(crack%surface%vertex_count))
+      do v = 1, size(crack%mine)
+         crack%mine(v) = owner_of(grid%blocks, &
+            block_of(bin_of(grid%lattice, crack%surface%x(:, v)))) == rank
+      end do
+      crack%stale = .false.
+   end subroutine take_vertices
+
+   !> H at the vertices, from their distance to the front.
+   subroutine weigh_vertices(crack, h)
+      type(crack_t), intent(inout) :: crack
+      real(wp), intent(in) :: h   !! cell size [length]
+      real(wp), allocatable :: phi(:)
+      real(wp) :: slope(3)
+      integer :: v
+
+      crack%weight = 1
+      if (crack%rule /= rule_graded) return
+      allocate (phi(crack%surface%vertex_count))
+      call vertex_phi(crack%surface, crack%front, phi)
+      do v = 1, size(phi)
+         call jump_weight(1.0_wp, phi(v), [1.0_wp, 0.0_wp, 0.0_wp], crack%ramp*h, crack%ramp_end*h, &
+            crack%weight(v), slope)
+      end do
+   end subroutine weigh_vertices
+
+   !> Distance from the surface within which particles know the crack [length].
+   pure function near_reach(lattice) result(reach)
+      type(lattice_t), intent(in) :: lattice
+      real(wp) :: reach
+
+      reach = merge(3.5_wp, 3.0_wp, lattice%shape == gimp_shape)*lattice%size
+   end function near_reach
+
+   !> Level sets and H of all particles near the crack. A side, once given behind the front, stays.
+   subroutine find_near(crack, number, grid, p, error)
+      type(crack_t), intent(inout) :: crack
+      integer, intent(in) :: number                       !! of the crack
+      type(grid_t), intent(in) :: grid
+      type(particles_t), intent(inout) :: p
+      type(error_t), allocatable, intent(out) :: error    !! too many cracks near a particle
+      type(nearest_t) :: nearest
+      real(wp) :: low(3), high(3), centre(3), reach, half
+      integer :: c, hint
+
+      half = 0.5_wp*grid%lattice%size
+      reach = near_reach(grid%lattice) + sqrt(3.0_wp)*half
+      low = minval(crack%surface%x, dim=2) - reach
+      high = maxval(crack%surface%x, dim=2) + reach
+      hint = 0
+      do c = 1, p%n_chunks
+         if (p%count(c) == 0) cycle
+         centre = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) + half
+         if (any(centre < low) .or. any(centre > high)) cycle
+         call nearest_on_surface(crack%index, crack%surface, centre, reach, nearest, hint)
+         hint = nearest%triangle
+         if (hint == 0) cycle
+         if (p%attached(c) == 0) call attach(p, c)
+         call find_lanes(crack, number, grid%lattice%size, reach, hint, p, c, error)
+         if (allocated(error)) return
+      end do
+      crack%evaluated = crack%surface%x
+   end subroutine find_near
+
+   !> Level sets and H of one chunk.
+   subroutine find_lanes(crack, number, h, reach, hint, p, c, error)
+      type(crack_t), intent(in) :: crack
+      integer, intent(in) :: number, hint, c
+      real(wp), intent(in) :: h, reach
+      type(particles_t), intent(inout) :: p
+      type(error_t), allocatable, intent(out) :: error
+      type(nearest_t) :: nearest
+      real(wp) :: x(3), psi, phi, e1(3), side, jump, slope(3)
+      integer :: i, at
+
+      associate (near => p%near(:, :, p%attached(c)))
+         do i = 1, p%count(c)
+            x = p%q(i, c_x:c_x + 2, c)
+            call nearest_on_surface(crack%index, crack%surface, x, 2*reach, nearest, hint)
+            call level_sets_at(crack%surface, crack%front, 2*reach, x, nearest, psi, phi, e1)
+            if (psi >= 0.5_wp*beyond_reach) cycle
+            at = slot_for(near(i, :), number)
+            if (at < 0) then
+               call raise(error, code_numerics, 'more than '//to_text(p%slots)// &
+                  ' cracks are near the particle '//to_text(p%id(i, c)))
+               return
+            end if
+            side = merge(1.0_wp, -1.0_wp, psi > 0)
+            if (nint(near(i, at + near_crack)) == number .and. near(i, at + near_phi) < 0) then
+               side = near(i, at + near_side)
+            end if
+            jump = side
+            slope = 0
+            if (crack%rule == rule_graded) then
+               call jump_weight(side, phi, e1, crack%ramp*h, crack%ramp_end*h, jump, slope)
+            end if
+            near(i, at + near_crack) = number
+            near(i, at + near_side) = side
+            near(i, at + near_psi) = sign(psi, side)
+            near(i, at + near_phi) = phi
+            near(i, at + near_jump) = jump
+            near(i, at + near_slope:at + near_slope + 2) = slope
+         end do
+      end associate
+   end subroutine find_lanes
+
+   !> Where the slot of a crack begins, less one: its own, or a free one; -1 where none is free.
+   pure function slot_for(near, number) result(at)
+      real(wp), intent(in) :: near(:)
+      integer, intent(in) :: number
+      integer :: at, k, taken
+
+      at = -1
+      do k = size(near)/n_near - 1, 0, -1
+         taken = nint(near(n_near*k + near_crack))
+         if (taken == number) then
+            at = n_near*k
+            return
+         end if
+         if (taken == 0) at = n_near*k
+      end do
+   end function slot_for
+
+   !> Move this rank's vertices with the velocity of fields 5:7; both faces on their own.
+   subroutine advance_crack(crack, number, grid, sided, dt)
+      type(crack_t), intent(inout) :: crack
+      integer, intent(in) :: number            !! of the crack
+      type(grid_t), intent(in) :: grid
+      type(sided_t), intent(in) :: sided
+      real(wp), intent(in) :: dt               !! [time]
+      real(wp) :: plus(3), minus(3), g
+      integer :: v, b, bin(3)
+
+      do v = 1, size(crack%mine)
+         if (.not. crack%mine(v)) cycle
+         bin = bin_of(grid%lattice, crack%surface%x(:, v))
+         b = local_block(grid%blocks, block_of(bin))
+         if (b == 0) then
+            crack%stale = .true.
+            cycle
+         end if
+         call face_velocities(grid, sided, number, crack%surface%x(:, v), bin, b, plus, minus, &
+            crack%material(v))
+         g = 0.5_wp*(1 + crack%weight(v))
+         crack%surface%up(:, v) = crack%surface%up(:, v) + dt*(g*plus + (1 - g)*minus)
+         crack%surface%um(:, v) = crack%surface%um(:, v) + dt*(g*minus + (1 - g)*plus)
+         crack%surface%x(:, v) = crack%surface%start(:, v) &
+            + 0.5_wp*(crack%surface%up(:, v) + crack%surface%um(:, v))
+         bin = bin_of(grid%lattice, crack%surface%x(:, v))
+         if (local_block(grid%blocks, block_of(bin)) == 0) crack%stale = .true.
+      end do
+   end subroutine advance_crack
+
+   !> Velocity of the two sides at a point: nodes without mass on a side do not count.
+   subroutine face_velocities(grid, sided, number, x, bin, b, plus, minus, material)
+      type(grid_t), intent(in) :: grid
+      type(sided_t), intent(in) :: sided
+      integer, intent(in) :: number, bin(3), b
+      real(wp), intent(in) :: x(3)
+      real(wp), intent(out) :: plus(3), minus(3)
+      logical, intent(out) :: material
+      real(wp) :: w(grid%lattice%reach**3), t(3), total(2)
+      integer :: rows(grid%lattice%reach**3, 2), s, k
+
+      t = (x - bin_corner(grid%lattice, bin))/grid%lattice%size
+      if (grid%lattice%shape == gimp_shape) then
+         w = weights_gimp(t - 0.5_wp, 0.25_wp)
+      else
+         w = weights_linear(t)
+      end if
+      rows(:, 1) = rows_of_bin(grid, bins_per_block*(b - 1) + local_bin(bin), &
+         stencil_offsets(grid%lattice))
+      rows(:, 2) = rows(:, 1)
+      s = 0
+      if (sided%n > 0) s = sided%bin(local_bin(bin), b)
+      if (s > 0) then
+         do k = 1, sided%n_cracks(s)
+            if (sided%crack(k, s) /= number) cycle
+            rows(:, 1) = sided%rows(:, 0, s)
+            rows(:, 2) = sided%rows(:, 2**(k - 1), s)
+         end do
+      end if
+      call weighted_velocity(grid, rows(:, 1), w, minus, total(1))
+      call weighted_velocity(grid, rows(:, 2), w, plus, total(2))
+      material = all(total > 1e-6_wp)
+      if (total(1) <= 1e-6_wp) minus = plus
+      if (total(2) <= 1e-6_wp) plus = minus
+   end subroutine face_velocities
+
+   pure subroutine weighted_velocity(grid, rows, w, v, total)
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: rows(:)
+      real(wp), intent(in) :: w(:)
+      real(wp), intent(out) :: v(3), total
+      integer :: i
+
+      v = 0
+      total = 0
+      do i = 1, size(rows)
+         if (.not. grid%node(1, rows(i)) > 0) cycle
+         total = total + w(i)
+         v = v + w(i)*grid%node(5:7, rows(i))
+      end do
+      if (total > 0) v = v/total
+   end subroutine weighted_velocity
+
+   !> Bring the vertices of all ranks together, let those without material follow, and renew the
+   !> geometry. Collective.
+   subroutine gather_crack(crack, comm, grid)
+      type(crack_t), intent(inout) :: crack
+      type(comm_t), intent(in) :: comm
+      type(grid_t), intent(in) :: grid
+      real(wp), allocatable :: state(:, :)
+      integer :: v
+
+      allocate (state(8, size(crack%mine)), source=0.0_wp)
+      do v = 1, size(crack%mine)
+         if (.not. crack%mine(v)) cycle
+         state(1:3, v) = crack%surface%up(:, v)
+         state(4:6, v) = crack%surface%um(:, v)
+         state(7, v) = 1
+         if (crack%material(v)) state(8, v) = 1
+      end do
+      call sum_all(comm, state)
+      do v = 1, size(crack%mine)
+         crack%material(v) = state(8, v) > 0.5_wp
+         if (state(7, v) < 0.5_wp) cycle
+         crack%surface%up(:, v) = state(1:3, v)
+         crack%surface%um(:, v) = state(4:6, v)
+      end do
+      if (any(crack%material) .and. .not. all(crack%material)) then
+         call fill_void(crack%surface, crack%material)
+      end if
+      call refresh_geometry(crack%surface)
+      call refresh_index(crack%surface, crack%index)
+      call refresh_front(crack%surface, crack%front)
+      call take_vertices(crack, comm%rank, grid)
+   end subroutine gather_crack
+
+   !> Whether the surface has turned or strained so much that level sets must be found again.
+   pure function has_drifted(crack, h) result(drifted)
+      type(crack_t), intent(in) :: crack
+      real(wp), intent(in) :: h   !! cell size [length]
+      logical :: drifted
+      real(wp) :: shift(3)
+      integer :: v, n
+
+      n = crack%surface%vertex_count
+      shift = sum(crack%surface%x - crack%evaluated, dim=2)/real(n, wp)
+      drifted = .false.
+      do v = 1, n
+         if (norm2(crack%surface%x(:, v) - crack%evaluated(:, v) - shift) > drift*h) drifted = .true.
+      end do
+   end function has_drifted
+end module xmpm_crack

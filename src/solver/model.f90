@@ -1,0 +1,103 @@
+!> Everything that a run is made of.
+module xmpm_model
+   use xmpm_kinds, only: wp, i8
+   use xmpm_communicator, only: comm_t
+   use xmpm_halo, only: halo_t
+   use xmpm_stage_clock, only: stage_clock_t
+   use xmpm_grid, only: grid_t
+   use xmpm_sharing, only: sharing_t
+   use xmpm_boundary, only: boundary_t
+   use xmpm_momentum, only: nodal_work_t
+   use xmpm_storage, only: particles_t
+   use xmpm_kernels, only: kernels_t
+   use xmpm_sided, only: sided_t
+   use xmpm_transfer, only: tally_t, bodies_t
+   use xmpm_migration, only: outbox_t
+   use xmpm_loads, only: load_t
+   use xmpm_curves, only: curve_t
+   use xmpm_crack, only: crack_t
+   implicit none
+   private
+
+   public :: model_t, gravity_t, options_t, ledger_t, step_i
+
+   !> A body force with its course in time.
+   type :: gravity_t
+      real(wp) :: acceleration(3) = 0   !! [length/time^2]
+      type(curve_t) :: curve            !! factor over time
+   end type gravity_t
+
+   !> What the deck chose of the method.
+   type :: options_t
+      real(wp) :: end_time = 0               !! [time]
+      integer :: most_steps = huge(1)        !! steps to take at most
+      real(wp) :: cfl = 0.5_wp               !! step over cell size / wave speed
+      real(wp) :: fixed_step = 0             !! given step, 0 for none [time]
+      real(wp) :: viscous = 0                !! nodal damping [1/time]
+      real(wp) :: pic = 0                    !! PIC fraction per time [1/time]
+      real(wp) :: damped_until = huge(1.0_wp)!! end of the damping [time]
+      logical :: xpic = .false.              !! XPIC(2) transfer
+      real(wp) :: energy_limit = 0.1_wp      !! error of the balance at which a run is given up
+      real(wp) :: smallest_step = 1e-3_wp    !! part of the first step at which a run is given up
+      real(wp) :: imbalance = 1.2_wp         !! threshold of repartition
+   end type options_t
+
+   !> Energies of this rank; those of the last step stand beside those before it, so that the balance
+   !> can be taken at one time although velocities are known half a step later.
+   type :: ledger_t
+      real(wp) :: time = 0                     !! of the balance [time]
+      real(wp) :: kinetic(2) = 0               !! before and after the last step
+      real(wp) :: strain(2) = 0                !! stress work, likewise
+      real(wp) :: external(2) = 0              !! work of loads, conditions and body forces, likewise
+      real(wp) :: damping(2) = 0               !! lost to nodal damping, likewise
+      real(wp) :: kinetic_start = 0            !! at the start, all ranks
+      real(wp) :: largest = 0                  !! largest energy so far, the measure of the error
+   end type ledger_t
+
+   !> A whole run.
+   type :: model_t
+      type(comm_t) :: comm
+      type(options_t) :: options
+      type(grid_t) :: grid
+      type(particles_t) :: particles
+      type(bodies_t) :: bodies
+      type(kernels_t) :: kernels
+      type(sided_t) :: sided
+      type(crack_t), allocatable :: cracks(:)
+      type(load_t), allocatable :: loads(:)
+      type(gravity_t), allocatable :: gravity(:)
+      type(boundary_t), allocatable :: boundaries(:)
+      type(curve_t), allocatable :: boundary_curves(:)   !! of each boundary's value
+      type(sharing_t) :: sharing              !! shared rows of ordinary nodes
+      type(halo_t) :: halo                    !! all shared rows
+      type(outbox_t) :: outbox                !! particles on their way out
+      type(nodal_work_t) :: nodal_work        !! of all steps so far, this rank
+      type(tally_t) :: tally                  !! of the last step, this rank
+      type(ledger_t) :: ledger
+      type(stage_clock_t) :: clock
+      procedure(step_i), pointer, nopass :: take_step => null()   !! the chosen scheme
+      integer(i8) :: step = 0                 !! steps taken
+      real(wp) :: time = 0                    !! [time]
+      real(wp) :: dt = 0                      !! of the present step [time]
+      real(wp) :: dt_before = 0               !! of the step before, 0 at the start [time]
+      real(wp) :: first_dt = 0                !! of the first step [time]
+      real(wp) :: wave_speed = 0              !! fastest wave of all ranks [length/time]
+      real(wp) :: speed = 0                   !! fastest particle of all ranks [length/time]
+      integer(i8) :: n_particles = 0          !! of all ranks
+      real(wp) :: imbalance = 1               !! most particles of a rank over the mean
+      logical :: split_again = .true.         !! the split nodes must be found anew
+      integer, allocatable :: movers(:)       !! chunks that particles left
+      integer :: n_movers = 0                 !! number of them
+      integer(i8) :: moved = 0                !! particles that changed bin since the last sort
+      logical :: relaxing = .false.           !! before the start: damped, loads of t = 0
+   end type model_t
+
+   abstract interface
+      !> One step of a scheme.
+      subroutine step_i(m, dt)
+         import :: model_t, wp
+         type(model_t), intent(inout) :: m
+         real(wp), intent(in) :: dt   !! [time]
+      end subroutine step_i
+   end interface
+end module xmpm_model

@@ -1,0 +1,243 @@
+!> The stages of a step, each a few calls to the layers below.
+module xmpm_stages
+   use xmpm_kinds, only: wp
+   use xmpm_halo, only: start_sum, finish_sum
+   use xmpm_stage_clock, only: start_stage, stop_stage, stage_p2g, stage_grid, stage_g2p, &
+      stage_stress, stage_halo, stage_crack
+   use xmpm_grid, only: clear_rows
+   use xmpm_momentum, only: advance_momentum, blend_change, velocity_from_second, change_from_velocity
+   use xmpm_boundary, only: apply_boundary, hold_boundary, region_set
+   use xmpm_transfer, only: tally_t, particles_to_grid, update_velocity, smooth_velocity, &
+      update_stress, advance_positions
+   use xmpm_loads, only: apply_load, work_of_load, rows_of_bin
+   use xmpm_lattice, only: stencil_offsets
+   use xmpm_curves, only: curve_value
+   use xmpm_crack, only: advance_crack
+   use xmpm_model, only: model_t
+   implicit none
+   private
+
+   public :: map_to_grid, advance_nodes, map_to_particles, strain_particles, move_particles
+   public :: strain_before, advance_cracks, new_velocity_for_strain
+
+contains
+
+   !> Mass, momentum and force of all rows: eq. 6 to 8 and 23 to 28. Blocks beside other ranks come
+   !> first, so that the halo travels while the inner ones are worked on.
+   subroutine map_to_grid(m)
+      type(model_t), intent(inout) :: m
+      integer :: i
+
+      call start_stage(m%clock, stage_p2g)
+      m%tally = tally_t()
+      call clear_rows(m%grid)
+      do i = 1, size(m%loads)
+         call apply_load(m%loads(i), m%particles, m%kernels, m%sided, m%time, m%grid)
+      end do
+      call particles_to_grid(m%particles, m%bodies, m%kernels, m%sided, 1, m%grid%blocks%n_edge, &
+         m%grid)
+      call start_sum(m%halo, m%comm, m%grid%node, 1, 7)
+      call particles_to_grid(m%particles, m%bodies, m%kernels, m%sided, m%grid%blocks%n_edge + 1, &
+         m%grid%blocks%n, m%grid)
+      call stop_stage(m%clock, stage_p2g)
+      call start_stage(m%clock, stage_halo)
+      call finish_sum(m%halo, m%grid%node, 1, 7)
+      call stop_stage(m%clock, stage_halo)
+   end subroutine map_to_grid
+
+   !> Nodal velocities after the step (eq. 4, 29) with damping and conditions; the energies that
+   !> nodes see; and the share of PIC or XPIC in what particles will get.
+   subroutine advance_nodes(m, dt)
+      type(model_t), intent(inout) :: m
+      real(wp), intent(in) :: dt   !! from v(n-1/2) to v(n+1/2) [time]
+      real(wp) :: body_force(3), rate, eta
+      integer :: i
+
+      call start_stage(m%clock, stage_grid)
+      body_force = 0
+      do i = 1, size(m%gravity)
+         body_force = body_force &
+            + curve_value(m%gravity(i)%curve, m%time)*m%gravity(i)%acceleration
+      end do
+      rate = 0
+      if (m%time < m%options%damped_until) rate = m%options%viscous
+      call advance_momentum(m%grid, dt, body_force, rate, m%nodal_work)
+      do i = 1, size(m%boundaries)
+         call set_velocity(m, i, dt)
+         if (m%boundaries(i)%region == region_set) call rows_around_set(m, i)
+         call apply_boundary(m%boundaries(i), m%grid, dt)
+      end do
+      do i = 1, size(m%loads)
+         call work_of_load(m%loads(i), m%particles, m%kernels, m%sided, m%time, dt, m%grid)
+      end do
+      eta = pic_share(m)
+      if (eta > 0) then
+         if (m%options%xpic) call smooth(m)
+         call blend_change(m%grid, eta, m%options%xpic)
+      end if
+      call stop_stage(m%clock, stage_grid)
+   end subroutine advance_nodes
+
+   !> Share of the nodal velocity in the particles' new one: 1 for XPIC, pic dt otherwise.
+   pure function pic_share(m) result(eta)
+      type(model_t), intent(in) :: m
+      real(wp) :: eta
+
+      eta = 0
+      if (m%options%xpic) eta = 1
+      if (m%options%pic > 0 .and. m%time < m%options%damped_until) eta = min(1.0_wp, m%options%pic*m%dt)
+   end function pic_share
+
+   !> Velocity that a condition prescribes at the end of the velocity step.
+   subroutine set_velocity(m, i, dt)
+      type(model_t), intent(inout) :: m
+      integer, intent(in) :: i
+      real(wp), intent(in) :: dt
+      real(wp) :: factor
+
+      associate (b => m%boundaries(i))
+         factor = curve_value(m%boundary_curves(i), m%time)
+         if (b%accelerates) then
+            b%velocity = b%velocity + dt*factor*b%value
+         else
+            b%velocity = curve_value(m%boundary_curves(i), m%time + 0.5_wp*m%dt)*b%value
+         end if
+      end associate
+   end subroutine set_velocity
+
+   !> Rows of the nodes around the particles of a condition's set, where they are now.
+   subroutine rows_around_set(m, i)
+      type(model_t), intent(inout) :: m
+      integer, intent(in) :: i
+      logical, allocatable :: near(:)
+      integer :: c, k, offsets(m%grid%lattice%reach**3)
+
+      offsets = stencil_offsets(m%grid%lattice)
+      allocate (near(m%grid%n_rows), source=.false.)
+      do c = 1, m%particles%n_chunks
+         if (m%particles%count(c) == 0) cycle
+         if (.not. btest(m%particles%any_set(c), m%boundaries(i)%set)) cycle
+         near(rows_of_bin(m%grid, m%particles%bin(c), offsets)) = .true.
+      end do
+      do k = m%grid%n_plain + 1, m%grid%n_rows
+         near(k) = near(m%grid%parent(k - m%grid%n_plain))
+      end do
+      m%boundaries(i)%rows = pack([(k, k=1, m%grid%n_rows)], near)
+   end subroutine rows_around_set
+
+   !> Momentum of the smoothed nodal velocity in grid%second, for XPIC(2).
+   subroutine smooth(m)
+      type(model_t), intent(inout) :: m
+
+      call smooth_velocity(m%particles, m%bodies, m%kernels, m%sided, 1, m%grid%blocks%n, m%grid)
+      call start_sum(m%halo, m%comm, m%grid%second, 1, 3)
+      call finish_sum(m%halo, m%grid%second, 1, 3)
+   end subroutine smooth
+
+   !> Particle velocities (eq. 43); with `remap` also MUSL's second map, whose velocity then stands in
+   !> fields 5:7.
+   subroutine map_to_particles(m, remap)
+      type(model_t), intent(inout) :: m
+      logical, intent(in) :: remap   !! whether the second map is wanted
+      real(wp) :: keep
+      integer :: i
+
+      call start_stage(m%clock, stage_g2p)
+      keep = 1 - pic_share(m)
+      associate (edge => m%grid%blocks%n_edge)
+         call update_velocity(m%particles, m%bodies, m%kernels, m%sided, 1, edge, keep, remap, &
+            m%grid, m%tally)
+         if (remap) call start_sum(m%halo, m%comm, m%grid%second, 1, 3)
+         call update_velocity(m%particles, m%bodies, m%kernels, m%sided, edge + 1, &
+            m%grid%blocks%n, keep, remap, m%grid, m%tally)
+      end associate
+      call stop_stage(m%clock, stage_g2p)
+      if (.not. remap) return
+      call start_stage(m%clock, stage_halo)
+      call finish_sum(m%halo, m%grid%second, 1, 3)
+      call stop_stage(m%clock, stage_halo)
+      call start_stage(m%clock, stage_grid)
+      call velocity_from_second(m%grid)
+      do i = 1, size(m%boundaries)
+         call hold_boundary(m%boundaries(i), m%grid, 5)
+      end do
+      call stop_stage(m%clock, stage_grid)
+   end subroutine map_to_particles
+
+   !> Take the new nodal velocity itself for the strain increment (USL, and cracks in USF).
+   subroutine new_velocity_for_strain(m)
+      type(model_t), intent(inout) :: m
+
+      call change_from_velocity(m%grid, .false.)
+   end subroutine new_velocity_for_strain
+
+   !> Stress and volume from fields 5:7 (eq. 45, 46), positions from fields 2:4 (eq. 44).
+   subroutine strain_particles(m, dt)
+      type(model_t), intent(inout) :: m
+      real(wp), intent(in) :: dt   !! [time]
+
+      call start_stage(m%clock, stage_stress)
+      call fit_movers(m)
+      call update_stress(m%particles, m%bodies, m%kernels, m%sided, m%grid, dt, dt, m%tally, &
+         m%movers, m%n_movers)
+      call stop_stage(m%clock, stage_stress)
+   end subroutine strain_particles
+
+   !> USF: stress from the velocity that the particles brought, before the forces are taken.
+   subroutine strain_before(m, dt)
+      type(model_t), intent(inout) :: m
+      real(wp), intent(in) :: dt   !! [time]
+      integer :: i
+
+      call map_to_grid(m)
+      call start_stage(m%clock, stage_stress)
+      call change_from_velocity(m%grid, .true.)
+      do i = 1, size(m%boundaries)
+         if (m%boundaries(i)%region == region_set) call rows_around_set(m, i)
+         call hold_boundary(m%boundaries(i), m%grid, 5)
+      end do
+      call fit_movers(m)
+      call update_stress(m%particles, m%bodies, m%kernels, m%sided, m%grid, dt, 0.0_wp, m%tally, &
+         m%movers, m%n_movers)
+      m%ledger%strain(2) = m%ledger%strain(2) + m%tally%work
+      call stop_stage(m%clock, stage_stress)
+   end subroutine strain_before
+
+   !> USF: positions from the new nodal velocity.
+   subroutine move_particles(m, dt)
+      type(model_t), intent(inout) :: m
+      real(wp), intent(in) :: dt   !! [time]
+
+      call start_stage(m%clock, stage_stress)
+      call fit_movers(m)
+      call advance_positions(m%particles, m%bodies, m%kernels, m%sided, m%grid, dt, m%tally, &
+         m%movers, m%n_movers)
+      call stop_stage(m%clock, stage_stress)
+   end subroutine move_particles
+
+   !> Room for every chunk in the list of movers.
+   subroutine fit_movers(m)
+      type(model_t), intent(inout) :: m
+
+      m%n_movers = 0
+      if (allocated(m%movers)) then
+         if (size(m%movers) >= m%particles%n_chunks) return
+         deallocate (m%movers)
+      end if
+      allocate (m%movers(m%particles%n_chunks + m%particles%n_chunks/8 + 64))
+   end subroutine fit_movers
+
+   !> Move the faces of the cracks with the velocity of fields 5:7.
+   subroutine advance_cracks(m, dt)
+      type(model_t), intent(inout) :: m
+      real(wp), intent(in) :: dt   !! [time]
+      integer :: i
+
+      if (size(m%cracks) == 0) return
+      call start_stage(m%clock, stage_crack)
+      do i = 1, size(m%cracks)
+         call advance_crack(m%cracks(i), i, m%grid, m%sided, dt)
+      end do
+      call stop_stage(m%clock, stage_crack)
+   end subroutine advance_cracks
+end module xmpm_stages
