@@ -1,6 +1,7 @@
 !> Particles of a set by id, each with its part of a loaded surface.
 module xmpm_set_table
    use xmpm_kinds, only: wp, i8
+   use xmpm_sort, only: sort_order
    implicit none
    private
 
@@ -22,7 +23,7 @@ contains
       integer, allocatable :: order(:)
       integer :: i, n
 
-      allocate (order, source=sorted_order(ids))
+      allocate (order, source=sort_order(ids))
       allocate (table%ids(size(ids)), table%area(3, size(ids)))
       n = 0
       do i = 1, size(ids)
@@ -61,49 +62,4 @@ contains
       end do
       place = 0
    end function find
-
-   !> Order that sorts ids, equal ones staying in order: merging of runs of 1, 2, 4, ...
-   pure function sorted_order(ids) result(order)
-      integer(i8), intent(in) :: ids(:)
-      integer, allocatable :: order(:)
-      integer, allocatable :: merged(:)
-      integer :: n, width, first, middle, last, i
-
-      n = size(ids)
-      order = [(i, i=1, n)]
-      allocate (merged(n))
-      width = 1
-      do while (width < n)
-         do first = 1, n, 2*width
-            middle = min(first + width, n + 1)
-            last = min(first + 2*width, n + 1)
-            call merge_runs(ids, order(first:middle - 1), order(middle:last - 1), &
-               merged(first:last - 1))
-         end do
-         order = merged
-         width = 2*width
-      end do
-   end function sorted_order
-
-   pure subroutine merge_runs(ids, left, right, merged)
-      integer(i8), intent(in) :: ids(:)
-      integer, intent(in) :: left(:), right(:)
-      integer, intent(out) :: merged(:)
-      integer :: i, l, r
-      logical :: take_left
-
-      l = 1
-      r = 1
-      do i = 1, size(merged)
-         take_left = r > size(right)
-         if (.not. take_left .and. l <= size(left)) take_left = ids(left(l)) <= ids(right(r))
-         if (take_left) then
-            merged(i) = left(l)
-            l = l + 1
-         else
-            merged(i) = right(r)
-            r = r + 1
-         end if
-      end do
-   end subroutine merge_runs
 end module xmpm_set_table

@@ -175,7 +175,7 @@ contains
 
       g = body('box', [0.0_wp, 0.0_wp, 0.0_wp, 4.0_wp, 1.0_wp, 1.0_wp])
       call take(g, 'cylinder', [3.0_wp, 0.5_wp, 0.5_wp, 1.0_wp, 0.5_wp, 0.5_wp, 0.2_wp])
-      planes = flat_planes(g, 1, -1.0_wp, 4.0_wp)
+      allocate (planes, source=flat_planes(g, 1, -1.0_wp, 4.0_wp))
       call check(suite, 'flat faces come in ascending order, the ends of the interval left out', &
          size(planes) == 3 .and. all(abs(planes - [0.0_wp, 1.0_wp, 3.0_wp]) < 1.0e-15_wp))
       call check(suite, 'a cylinder has no flat face beside its axis', &
