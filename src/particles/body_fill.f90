@@ -76,14 +76,12 @@ contains
       integer :: n
       real(wp), allocatable :: x(:, :), volume(:)
 
-      n = 0
-      select case (region_of_cells(g, lattice, low_cell, high_cell, 0.0_wp))
-      case (region_in)
+      if (region_of_cells(g, lattice, low_cell, high_cell, 0.0_wp) == region_in) then
          n = lattice%per_direction**3*product(high_cell - low_cell + 1)
-      case (region_cut)
+      else
          call fill_bins(g, lattice, low_cell, high_cell, x, volume)
          n = size(volume)
-      end select
+      end if
    end function count_in_bins
 
    !> The cells that bounds reach into, touching not counted.
@@ -132,16 +130,12 @@ contains
       integer, intent(in) :: cell(3)
       real(wp), intent(inout) :: x(:, :), volume(:)
       integer, intent(inout) :: n
-      integer :: i, j, k, s(3)
+      integer :: i, j, k, s(3), region
       real(wp) :: edge, part, moment(3)
 
-      select case (region_of_cells(g, lattice, cell, cell, 1.0_wp))
-      case (region_in)
-         call fill_whole_cell(lattice, cell, x, volume, n)
-         return
-      case (region_out)
-         return
-      end select
+      region = region_of_cells(g, lattice, cell, cell, 1.0_wp)
+      if (region == region_in) call fill_whole_cell(lattice, cell, x, volume, n)
+      if (region /= region_cut) return
       edge = edge_of(lattice)
       do k = 0, lattice%per_direction - 1
          do j = 0, lattice%per_direction - 1

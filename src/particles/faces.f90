@@ -1,8 +1,8 @@
 !> Surface layers of bodies: which particles carry a face, each with its outward area vector.
 !>
 !> Flat faces are the planes across x, y or z that bound the body: `+x -x +y -y +z -z`. `side` is
-!> the lateral surface of cylinders, tubes and spheres; `inside` the inner wall of tubes and the wall
-!> of cylinders and spheres that were taken away.
+!> the lateral surface of cylinders, tubes and spheres; `inside` the inner wall of tubes and the
+!> wall of cylinders and spheres that were taken away.
 module xmpm_faces
    use xmpm_kinds, only: wp
    use xmpm_error, only: error_t, raise, code_usage
@@ -180,8 +180,9 @@ contains
          if (radius <= 0.0_wp) cycle
          call wall_depth(g%part(i), inward, x, depth, normal)
          thickness = min(spacing, radius)
-         if (g%part(i)%shape == shape_tube) &
+         if (g%part(i)%shape == shape_tube) then
             thickness = min(thickness, g%part(i)%r_out - g%part(i)%r_in)
+         end if
          weight = min(1.0_wp, 0.5_wp + (thickness - depth)/spacing)
          if (weight <= 0.0_wp) cycle
          if (inside(g, x + (depth + 0.01_wp*spacing)*normal)) cycle
@@ -251,8 +252,9 @@ contains
       if (known(1) < 0.0_wp .or. found(1) <= 0.0_wp) return
       mean = found(2:4)/found(1)
       factor = known(1)/found(1)
-      if (norm2(mean) < 0.99_wp) &
+      if (norm2(mean) < 0.99_wp) then
          factor = (factor - dot_product(known(2:4), mean)/found(1))/(1.0_wp - norm2(mean)**2)
+      end if
       excess = factor*mean - known(2:4)/found(1)
       do i = 1, size(area, 2)
          area(:, i) = factor*area(:, i) - norm2(area(:, i))*excess

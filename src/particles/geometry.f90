@@ -122,7 +122,7 @@ contains
       integer, intent(out) :: region       !! region_out, region_cut or region_in
       integer, intent(out) :: cuts         !! number of shapes that cut the region
       integer, intent(out) :: last         !! the last of these, 0: none
-      integer :: i, effect
+      integer :: i, effect, found
 
       region = region_out
       cuts = 0
@@ -131,16 +131,16 @@ contains
       do i = 1, size(g%part)
          effect = merge(region_out, region_in, g%part(i)%subtract)
          if (region == effect) cycle
-         select case (primitive_region(g%part(i), centre, half, g%tolerance))
-         case (region_in)
+         found = primitive_region(g%part(i), centre, half, g%tolerance)
+         if (found == region_in) then
             region = effect
             cuts = 0
             last = 0
-         case (region_cut)
+         else if (found == region_cut) then
             region = region_cut
             cuts = cuts + 1
             last = i
-         end select
+         end if
       end do
    end subroutine region_of
 
