@@ -3,7 +3,7 @@ module xmpm_deck_loads
    use xmpm_kinds, only: wp
    use xmpm_text, only: string_t, to_text, lower
    use xmpm_text_lists, only: append, join
-   use xmpm_deck_data, only: deck_t, block_t, has, given, valid, reals_of, text_of, texts_of, &
+   use xmpm_deck_data, only: deck_t, block_t, has, valid, reals_of, text_of, texts_of, &
       complain, find_block, block_named, entry_place
    use xmpm_deck_choices, only: exactly_one, refuse, set_texts
    use xmpm_deck_references, only: resolve, resolve_set, missing
@@ -72,7 +72,6 @@ contains
    subroutine check_boundary(deck, block)
       type(deck_t), intent(inout) :: deck
       type(block_t), intent(inout) :: block
-      character(len=:), allocatable :: type
 
       call exactly_one(deck, block, 'plane box set')
       call resolve_set(deck, block)
@@ -80,13 +79,24 @@ contains
       call check_components(deck, block)
       call check_time_keys(deck, block)
       if (.not. valid(block, 'type')) return
+      call check_type(deck, block)
+      if (valid(block, 'components')) &
+         call set_texts(block, 'components', in_order(text_of(block, 'components')))
+   end subroutine check_boundary
+
+   !> The keys that each type needs, and no others.
+   subroutine check_type(deck, block)
+      type(deck_t), intent(inout) :: deck
+      type(block_t), intent(inout) :: block
+      character(len=:), allocatable :: type
+
       type = text_of(block, 'type')
       if (type == 'velocity' .or. type == 'acceleration') then
          call check_value(deck, block)
          return
       end if
       call refuse(deck, block, 'value', 'it belongs to type = velocity and acceleration')
-      if (given(block, 'curve')) &
+      if (text_of(block, 'curve') /= 'step') &
          call refuse(deck, block, 'curve', 'it belongs to type = velocity and acceleration')
       if (type == 'symmetry' .and. .not. has(block, 'plane')) &
          call complain(deck, block, 'type', &
@@ -96,29 +106,36 @@ contains
          'a roller away from a plane needs the components that it holds')
       if (type == 'symmetry' .or. (type == 'roller' .and. has(block, 'plane'))) &
          call refuse(deck, block, 'components', 'the plane says which component is held')
-   end subroutine check_boundary
+   end subroutine check_type
 
-   !> Letters out of x y z, each once; kept as one text in that order.
+   !> Letters out of x y z, each once; kept as one text.
    subroutine check_components(deck, block)
       type(deck_t), intent(inout) :: deck
       type(block_t), intent(inout) :: block
-      character(len=:), allocatable :: all, sorted
-      integer :: i
+      character(len=:), allocatable :: all
 
       if (.not. valid(block, 'components')) return
       all = lower(join(texts_of(block, 'components'), ''))
-      sorted = ''
-      do i = 1, 3
-         if (index(all, 'xyz' (i:i)) > 0) sorted = sorted//'xyz' (i:i)
-      end do
-      if (len(sorted) /= len(all)) then
-         call complain(deck, block, 'components', "'"//all &
-            //"' is not made of the letters x, y, z, each once")
+      if (len(in_order(all)) /= len(all)) then
+         call complain(deck, block, 'components', &
+            "'"//all//"' is not made of the letters x, y, z, each once")
          block%entries(entry_place(block, 'components'))%valid = .false.
       else
-         call set_texts(block, 'components', sorted)
+         call set_texts(block, 'components', all)
       end if
    end subroutine check_components
+
+   !> Those of the letters x, y, z that are in a text, in this order.
+   pure function in_order(letters) result(sorted)
+      character(len=*), intent(in) :: letters
+      character(len=:), allocatable :: sorted
+      integer :: i
+
+      sorted = ''
+      do i = 1, 3
+         if (index(letters, 'xyz' (i:i)) > 0) sorted = sorted//'xyz' (i:i)
+      end do
+   end function in_order
 
    !> One number for each component, or all three; kept as all three.
    subroutine check_value(deck, block)

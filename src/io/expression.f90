@@ -8,7 +8,7 @@ module xmpm_expression
    use xmpm_text, only: string_t, lower
    use xmpm_numbers, only: parse_real, number_length, is_finite, number_good
    use xmpm_text_lists, only: append, slice
-   use xmpm_deck_hints, only: did_you_mean
+   use xmpm_deck_hints, only: did_you_mean, nearest_name, edit_distance
    implicit none
    private
 
@@ -444,7 +444,7 @@ contains
       end do
    end function place_of
 
-   !> The nearest parameter or function.
+   !> The nearest parameter or function, if it is near.
    function hint(reader, name) result(text)
       type(reader_t), intent(in) :: reader
       character(len=*), intent(in) :: name
@@ -460,6 +460,8 @@ contains
          call append(names, trim(functions_of_two(i)))
       end do
       call append(names, 'pi')
-      text = did_you_mean(name, names)
+      text = ''
+      i = nearest_name(name, names)
+      if (2*edit_distance(name, names(i)%s) <= len(name) + 1) text = did_you_mean(name, names)
    end function hint
 end module xmpm_expression
