@@ -1,0 +1,78 @@
+!> The energy balance. Velocities are known half a step after positions and stresses; the balance of
+!> time t(n) takes the mean of both neighbours for all that follows velocities.
+module xmpm_ledger
+   use xmpm_kinds, only: wp, i8
+   use xmpm_communicator, only: sum_all
+   use xmpm_balance, only: balance_t, momenta
+   use xmpm_model, only: model_t
+   implicit none
+   private
+
+   public :: note_energies, take_balance, start_ledger
+
+contains
+
+   !> Begin the balance with the velocities that the particles have.
+   subroutine start_ledger(m)
+      type(model_t), intent(inout) :: m
+      real(wp) :: kinetic
+      integer :: c
+
+      kinetic = 0
+      do c = 1, m%particles%n_chunks
+         if (m%particles%count(c) == 0) cycle
+         kinetic = kinetic + 0.5_wp*sum(m%particles%q(:, 7, c)*(m%particles%q(:, 4, c)**2 &
+            + m%particles%q(:, 5, c)**2 + m%particles%q(:, 6, c)**2))
+      end do
+      m%ledger%kinetic = kinetic
+      m%ledger%strain = 0
+      m%ledger%external = 0
+      m%ledger%damping = 0
+      m%ledger%largest = 0
+      m%ledger%time = m%time
+      m%nodal_work%external = 0
+      m%nodal_work%damping = 0
+      m%loads%work = 0
+      m%boundaries%work = 0
+      call sum_all(m%comm, kinetic)
+      m%ledger%kinetic_start = kinetic
+   end subroutine start_ledger
+
+   !> Take over the energies of the step just done, before time moves on.
+   subroutine note_energies(m)
+      type(model_t), intent(inout) :: m
+
+      associate (l => m%ledger)
+         l%time = m%time
+         l%kinetic = [l%kinetic(2), m%tally%kinetic]
+         l%strain = [l%strain(2), l%strain(2) + m%tally%work]
+         l%damping = [l%damping(2), m%nodal_work%damping]
+         l%external = [l%external(2), m%nodal_work%external + sum(m%loads%work) &
+            + sum(m%boundaries%work)]
+      end associate
+   end subroutine note_energies
+
+   !> The balance of the start of the last step, over all ranks. Collective.
+   subroutine take_balance(m, balance)
+      type(model_t), intent(inout) :: m
+      type(balance_t), intent(out) :: balance
+      real(wp) :: sums(4)
+
+      associate (l => m%ledger)
+         sums = [0.5_wp*sum(l%kinetic), l%strain(1), 0.5_wp*sum(l%external), 0.5_wp*sum(l%damping)]
+         call sum_all(m%comm, sums)
+         balance%time = l%time
+         balance%step = max(0_i8, m%step - 1)
+         balance%dt = m%dt_before
+         balance%kinetic = sums(1)
+         balance%strain = sums(2)
+         balance%external = sums(3)
+         balance%damping = sums(4)
+         balance%error = sums(1) - l%kinetic_start + sums(2) + sums(4) - sums(3)
+         l%largest = max(l%largest, sums(1), abs(sums(2)), abs(sums(3)), l%kinetic_start)
+         balance%relative_error = 0
+         if (l%largest > 0) balance%relative_error = balance%error/l%largest
+      end associate
+      call momenta(m, balance%linear, balance%angular)
+   end subroutine take_balance
+end module xmpm_ledger
