@@ -28,8 +28,8 @@ run() {
    echo "== $1"
    "${@:2}" || failed=1
 }
+run fortitude "$tools/fortitude" check --quiet --output-format concise "${fix[@]}" src tests
 run 'Fortran layout and house rules' "$tools/python" tests/lint/fortran.py "${fix[@]}"
-run fortitude "$tools/fortitude" check --quiet --output-format concise src tests
 run 'ruff check' "$tools/ruff" check --quiet --no-cache "${fix[@]}" "${python_folders[@]}"
 run 'ruff format' "$tools/ruff" format --quiet --no-cache "${format[@]}" "${python_folders[@]}"
 run shellcheck "$tools/shellcheck" --external-sources --source-path=SCRIPTDIR "${shell_files[@]}"

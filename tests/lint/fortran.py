@@ -3,7 +3,8 @@
 usage: fortran.py [--fix] [FILE ...]        (default: all of src and tests)
 
 Layout is fprettify's, with 3 spaces a level; the indentation of continued lines is left to the
-writer, since fprettify would align them with the last bracket. --fix writes the layout.
+writer, since fprettify would align them with the last bracket. --fix writes the layout and breaks
+lines that pass column 100.
 The house rules are few and mechanical: one module a file under its file's name, layers that only
 look down, `use` with `only`, no variables that outlive a call, procedures of bounded length, a
 sentence above every module.
@@ -15,6 +16,7 @@ import argparse
 import io
 import re
 import sys
+import textwrap
 from pathlib import Path
 
 import fprettify
@@ -32,6 +34,7 @@ LAYERS = [
     "solver",
     "app",
 ]
+WIDTH = 100  # columns
 LONGEST = 60  # lines of a procedure, from its statement to its end
 # The main program; the files that may use all of HDF5; tables may be longer than procedures.
 PROGRAMS = {"src/app/xmpm3d.f90"}
@@ -91,8 +94,10 @@ def check_layout(path: Path, fix: bool) -> list[str]:
     """Lines of a file that are not laid out as agreed."""
     text = path.read_text()
     wanted = laid_out(text, str(path))
-    if fix and text != wanted:
-        path.write_text(wanted)
+    if fix:
+        wanted = with_short_lines(wanted)
+        if text != wanted:
+            path.write_text(wanted)
         return []
     pairs = zip(text.splitlines(), wanted.splitlines(), strict=False)
     faults = [
@@ -103,6 +108,76 @@ def check_layout(path: Path, fix: bool) -> list[str]:
     if not faults and text != wanted:
         faults = ["1: layout, number of lines or the last line's end"]
     return faults
+
+
+def with_short_lines(text: str) -> str:
+    """Break what passes the last column: code after a comma or operator, comments at a blank."""
+    result: list[str] = []
+    continued = False
+    for line in text.splitlines():
+        result += short_lines(line, continued)
+        if not line.lstrip().startswith("!"):
+            continued = without_strings(line).split("!")[0].rstrip().endswith("&")
+    return "\n".join(result) + "\n"
+
+
+def short_lines(line: str, continued: bool) -> list[str]:
+    """Break one line where it is too long; leave it where no place to break is found."""
+    if len(line) <= WIDTH:
+        return [line]
+    indent = " " * (len(line) - len(line.lstrip()))
+    if re.match(r"\s*![$]omp\b", line, re.I):
+        place = line.rfind(",", 0, WIDTH - 2) + 1
+        return [line[:place] + " &", *short_lines(f"{indent}!$omp& {line[place:].lstrip()}", True)]
+    if re.match(r"\s*!(?![$]|GCC[$])", line):
+        return wrapped("", line.lstrip(), indent)
+    masked = without_strings(line)
+    mark = masked.find("!")
+    code = line if mark < 0 else line[:mark].rstrip()
+    if mark >= 0 and len(code) < WIDTH - 30:
+        if line.startswith("!!", mark):
+            return wrapped(line[:mark], line[mark:], " " * mark)
+        return [*wrapped("", line[mark:], indent), code]
+    inner = indent if continued else indent + "   "
+    if place := break_place(masked[: len(code)]):
+        rest = inner + line[place:].lstrip()
+        return [line[:place].rstrip() + " &", *short_lines(rest, True)]
+    for m in re.finditer(r"'[^']*'|\"[^\"]*\"", line[: len(code)]):
+        place = line.rfind(" ", m.start() + 2, min(m.end() - 2, WIDTH - 5)) + 1
+        if m.end() > WIDTH - 5 and place > m.start():
+            rest = inner + m[0][0] + line[place:]
+            return [line[:place] + m[0][0] + "// &", *short_lines(rest, True)]
+    return [line]
+
+
+def wrapped(before: str, comment: str, indent: str) -> list[str]:
+    """Break a comment at blanks; its further lines begin with the same mark after the indent."""
+    mark = re.match(r"![>!<]?\s*", comment)[0]
+    return textwrap.wrap(
+        comment[len(mark) :],
+        WIDTH,
+        break_on_hyphens=False,
+        initial_indent=(before or indent) + mark,
+        subsequent_indent=indent + mark,
+    )
+
+
+def break_place(code: str) -> int | None:
+    """Find the last good place to break: outside most brackets, in the second half of the line."""
+    depth = 0
+    best: tuple[int, int] | None = None
+    for place, letter in enumerate(code[: WIDTH - 2]):
+        depth += (letter in "([") - (letter in ")]")
+        after = code[place + 1 :]
+        operator = re.search(r"(,|//|\.and\.|\.or\.| [-+*/=<>]+)$", code[: place + 1], re.I)
+        good = (
+            operator
+            and not after.startswith(("/", "=", ">", "*"))
+            and after.strip() not in ("", "&")
+        )
+        if good and place > 45 and (best is None or depth <= best[0]):
+            best = (depth, place + 1)
+    return best[1] if best else None
 
 
 def check_rules(path: Path, modules: dict[str, Path]) -> list[str]:
