@@ -50,9 +50,9 @@ def test_a_long_text_is_broken_at_a_blank_and_joined():
 
 def test_directives_go_on_as_directives():
     line = "      !$omp simd private(" + ", ".join(f"name_{n}" for n in range(20)) + ")"
-    first, second = fortran.short_lines(line, False)
-    assert first.endswith(", &")
-    assert second.startswith("      !$omp& name_")
+    parts = fortran.short_lines(line, False)
+    assert all(part.endswith(", &") and len(part) <= 100 for part in parts[:-1])
+    assert all(part.startswith("      !$omp& name_") for part in parts[1:])
 
 
 def test_long_comments_keep_their_mark():
