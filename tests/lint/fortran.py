@@ -138,6 +138,8 @@ def short_lines(line: str, continued: bool) -> list[str]:
         if line.startswith("!!", mark):
             return wrapped(line[:mark], line[mark:], " " * mark)
         return [*wrapped("", line[mark:], indent), code]
+    if re.search("['\"]", re.sub(r"'x*'", "", masked[: len(code)])):
+        return [line]  # a text that goes on in the next line
     inner = indent if continued else indent + "   "
     if place := break_place(masked[: len(code)]):
         rest = inner + line[place:].lstrip()

@@ -48,6 +48,11 @@ def test_a_long_text_is_broken_at_a_blank_and_joined():
     assert "".join(p.strip() for p in parts).replace("'// &'", "") == line.strip()
 
 
+def test_a_text_that_goes_on_in_the_next_line_is_left_alone():
+    line = "      call raise(error, 'one text, two texts, " + "many texts, " * 6 + "&"
+    assert fortran.short_lines(line, False) == [line]
+
+
 def test_directives_go_on_as_directives():
     line = "      !$omp simd private(" + ", ".join(f"name_{n}" for n in range(20)) + ")"
     parts = fortran.short_lines(line, False)
