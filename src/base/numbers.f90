@@ -104,7 +104,7 @@ contains
       character(len=*), intent(in) :: text
       real(wp), intent(out) :: value
       integer, intent(out) :: status
-      character(len=len(text)) :: buffer
+      character(len=:), allocatable :: buffer
       logical :: halting(size(ieee_usual))
       integer :: mark, io
 

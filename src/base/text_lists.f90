@@ -4,7 +4,7 @@ module xmpm_text_lists
    implicit none
    private
 
-   public :: append, join, slice, upper
+   public :: append, join, slice, upper, shown
 
 contains
 
@@ -48,6 +48,16 @@ contains
 
       part = text(first:last)
    end function slice
+
+   !> A text as a message shows it: of a long one the start.
+   pure function shown(text) result(short)
+      character(len=*), intent(in) :: text   !! any
+      character(len=:), allocatable :: short
+      integer, parameter :: longest = 80
+
+      short = text
+      if (len(text) > longest) short = text(:longest)//'...'
+   end function shown
 
    !> Upper-case copy of a text.
    pure function upper(text) result(up)

@@ -35,19 +35,28 @@ contains
       character(len=*), intent(in) :: word     !! what was written
       type(string_t), intent(in) :: names(:)   !! what is valid
       integer :: place
-      integer :: i, distance, least, length
+      integer :: i, distance, least
 
       place = 0
       least = huge(least)
-      length = min(len(word), 80)
       do i = 1, size(names)
-         distance = edit_distance(lower(word(:length)), lower(names(i)%s))
+         distance = distance_of_starts(word, names(i)%s)
          if (distance < least) then
             least = distance
             place = i
          end if
       end do
    end function nearest_name
+
+   !> Edit distance of the first letters of two words, without regard to their case.
+   pure function distance_of_starts(a, b) result(distance)
+      character(len=*), intent(in) :: a
+      character(len=*), intent(in) :: b
+      integer :: distance
+      integer, parameter :: longest = 80
+
+      distance = edit_distance(lower(a(:min(len(a), longest))), lower(b(:min(len(b), longest))))
+   end function distance_of_starts
 
    !> '; did you mean ...?' with the nearest name, or nothing where there are no names.
    pure function did_you_mean(word, names) result(hint)

@@ -89,15 +89,13 @@ contains
    end function place_of_row
 
    !> Cut one line.
-   pure subroutine cut_line(raw, row, tokens, fault)
-      character(len=*), intent(in) :: raw                          !! the line
+   pure subroutine cut_line(line, row, tokens, fault)
+      character(len=*), intent(in) :: line                   !! without its end
       integer, intent(in) :: row                                   !! its number
       type(tokens_t), intent(inout) :: tokens                      !! gets its tokens
       character(len=:), allocatable, intent(out) :: fault          !! what is wrong, if anything is
-      character(len=len(raw)) :: line
       integer :: place, length, bad
 
-      line = raw
       length = len_trim(line)
       if (length > 0) then
          if (line(length:length) == achar(13)) length = length - 1
@@ -164,11 +162,12 @@ contains
       integer, intent(inout) :: place
       character(len=:), allocatable, intent(inout) :: fault
       character(len=:), allocatable :: text
-      integer :: depth, last
+      integer :: depth, last, length
       logical :: quoted
       character(len=1) :: c
 
-      text = ''
+      allocate (character(len=len(line) - place + 1) :: text)
+      length = 0
       depth = 0
       quoted = .false.
       do while (place <= len(line))
@@ -181,18 +180,20 @@ contains
                fault = 'a quote is opened and not closed on this line'
                last = len(line) + 1
             end if
-            text = text//line(place + 1:last - 1)
+            text(length + 1:length + last - place - 1) = line(place + 1:last - 1)
+            length = length + last - place - 1
             quoted = .true.
             place = last + 1
          else
             if (c == '(') depth = depth + 1
             if (c == ')') depth = max(0, depth - 1)
-            text = text//c
+            length = length + 1
+            text(length:length) = c
             place = place + 1
          end if
       end do
       if (depth > 0) fault = 'a parenthesis is opened and not closed on this line'
-      call add_token(tokens, token_value, text, quoted, row)
+      call add_token(tokens, token_value, text(:length), quoted, row)
    end subroutine cut_value
 
    pure subroutine add_token(tokens, kind, text, quoted, row)

@@ -1,7 +1,7 @@
 !> Tokens to blocks and entries, checked against the names in the keyword table.
 module xmpm_deck_parser
    use xmpm_text, only: lower
-   use xmpm_text_lists, only: append, join, upper
+   use xmpm_text_lists, only: append, join, upper, shown
    use xmpm_expression, only: is_identifier
    use xmpm_keywords, only: keyword_t, keyword_place, key_place, keyword_names, key_names, &
       kind_flag, kind_text, kind_word, no_name, must_have_name
@@ -29,7 +29,8 @@ contains
       ended = .false.
       place = 1
       if (kind_at(tokens, 1) /= token_keyword .and. tokens%count > 0) then
-         call blame(deck, tokens, 1, "'"//tokens%list(1)%text//"' stands before the first keyword")
+         call blame(deck, tokens, 1, "'"//shown(tokens%list(1)%text) &
+            //"' stands before the first keyword")
          call skip_to_keyword(tokens, place)
       end if
       do while (place <= tokens%count)
@@ -54,7 +55,7 @@ contains
       place = place + 1
       found = keyword_place(table, name)
       if (found == 0) then
-         call blame(deck, tokens, start, "unknown keyword '*"//upper(name)//"'" &
+         call blame(deck, tokens, start, "unknown keyword '*"//shown(upper(name))//"'" &
             //did_you_mean('*'//upper(name), keyword_names(table)))
          call skip_to_keyword(tokens, place)
       else if (name == 'parameter') then
@@ -119,7 +120,7 @@ contains
       if (.not. is_free_value(tokens, place)) return
       if (row_at(tokens, place) /= block%row .or. kind_at(tokens, place - 1) /= token_value) return
       if (key_place(keyword, lower(tokens%list(place)%text)) > 0) return
-      call complain(deck, block, '', "'"//tokens%list(place)%text &
+      call complain(deck, block, '', "'"//shown(tokens%list(place)%text) &
          //"' follows the name: a name with blanks must be in quotes")
       do while (is_free_value(tokens, place) .and. row_at(tokens, place) == block%row)
          place = place + 1
@@ -202,13 +203,14 @@ contains
       if (size(keyword%keys) == 0) then
          call blame(deck, tokens, place, '*'//upper(trim(keyword%name)) &
             //" takes no keys, but here is '" &
-            //tokens%list(place)%text//"'")
+            //shown(tokens%list(place)%text)//"'")
       else if (is_identifier(tokens%list(place)%text)) then
-         call blame(deck, tokens, place, "unknown key '"//tokens%list(place)%text//"' of *" &
+         call blame(deck, tokens, place, "unknown key '"//shown(tokens%list(place)%text)//"' of *" &
             //upper(trim(keyword%name))//did_you_mean(tokens%list(place)%text, key_names(keyword)) &
             //' Known: '//join(key_names(keyword), ', '))
       else
-         call blame(deck, tokens, place, "'"//tokens%list(place)%text//"' stands where a key of *" &
+         call blame(deck, tokens, place, "'"//shown(tokens%list(place)%text) &
+            //"' stands where a key of *" &
             //upper(trim(keyword%name))//' must be: '//join(key_names(keyword), ', '))
       end if
    end subroutine blame_key
@@ -361,7 +363,7 @@ contains
          else if (kind_at(tokens, place) == token_comma) then
             place = place + 1
          else
-            call blame(deck, tokens, place, "'"//tokens%list(place)%text &
+            call blame(deck, tokens, place, "'"//shown(tokens%list(place)%text) &
                //"' stands where 'name = expression' " &
                //'must be; blanks may stand only inside parentheses')
             place = place + 1

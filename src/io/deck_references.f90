@@ -1,7 +1,7 @@
 !> Keys that name other blocks of the deck: the block must exist.
 module xmpm_deck_references
    use xmpm_text, only: string_t
-   use xmpm_text_lists, only: upper
+   use xmpm_text_lists, only: append, upper
    use xmpm_keywords, only: split_words
    use xmpm_deck_data, only: deck_t, block_t, has, valid, text_of, complain, find_block, &
       count_blocks, block_named, names_of_blocks
@@ -56,13 +56,15 @@ contains
       character(len=*), intent(in) :: name
       character(len=*), intent(in), optional :: also
       character(len=:), allocatable :: text
-      type(string_t), allocatable :: names(:)
+      type(string_t), allocatable :: names(:), words(:)
+      integer :: i
 
+      names = names_of_blocks(deck, keyword)
       if (present(also)) then
-         call split_words(also, names)
-         names = [names_of_blocks(deck, keyword), names]
-      else
-         names = names_of_blocks(deck, keyword)
+         call split_words(also, words)
+         do i = 1, size(words)
+            call append(names, words(i)%s)
+         end do
       end if
       text = 'there is no *'//upper(keyword)//" '"//name//"'"//did_you_mean(name, names)
       if (size(names) == 0) text = text//' (none in the deck has a name)'

@@ -3,7 +3,8 @@ module xmpm_deck_values
    use xmpm_kinds, only: wp
    use xmpm_error, only: error_t
    use xmpm_text, only: string_t, to_text, lower
-   use xmpm_text_lists, only: join, upper
+   use xmpm_text_lists, only: join, upper, shown
+   use xmpm_numbers, only: parse_real, number_good
    use xmpm_expression, only: variables_t, evaluate, define, is_reserved, is_identifier
    use xmpm_keywords, only: keyword_t, key_t, keyword_place, key_place, split_words, in_range, &
       kind_real, kind_integer, kind_word, kind_text, kind_flag, kind_axis
@@ -170,7 +171,7 @@ contains
       end if
       call blame(deck, entry, 0, 'it needs '//allowed//' '//trim(merge('values', 'value ', &
          most > 1)) &
-         //' and got '//to_text(size(entry%texts))//': '//join(entry%texts, ' '))
+         //' and got '//to_text(size(entry%texts))//': '//shown(join(entry%texts, ' ')))
       entry%valid = .false.
    end subroutine check_count
 
@@ -212,9 +213,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical, intent(out), optional :: unknown
       logical :: not_known
+      integer :: status
 
       not_known = .false.
-      value = 0.0_wp
+      call parse_real(entry%texts(i)%s, value, status)
       if (entry%quoted(i)) then
          allocate (error)
          error%message = 'a text in quotes stands where a number must be'
@@ -222,7 +224,7 @@ contains
          '+-*/^') == 0) then
          allocate (error)
          error%message = 'an expression has no blanks outside its parentheses'
-      else
+      else if (status /= number_good) then
          call evaluate(entry%texts(i)%s, variables, value, error, not_known)
       end if
       if (present(unknown)) unknown = not_known
@@ -385,8 +387,8 @@ contains
       character(len=*), intent(in) :: message
       character(len=:), allocatable :: text
 
-      text = entry%file//':'//to_text(entry%line)//": '"//entry%key
-      if (i > 0) text = text//' = '//entry%texts(i)%s
+      text = entry%file//':'//to_text(entry%line)//": '"//shown(entry%key)
+      if (i > 0) text = text//' = '//shown(entry%texts(i)%s)
       call note_problem(deck, entry%row, text//"': "//message)
    end subroutine blame
 end module xmpm_deck_values

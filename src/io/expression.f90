@@ -7,7 +7,7 @@ module xmpm_expression
    use xmpm_error, only: error_t, raise, code_usage
    use xmpm_text, only: string_t, lower
    use xmpm_numbers, only: parse_real, number_length, is_finite, number_good
-   use xmpm_text_lists, only: append, slice
+   use xmpm_text_lists, only: append, slice, shown
    use xmpm_deck_hints, only: did_you_mean, nearest_name, edit_distance
    implicit none
    private
@@ -228,7 +228,8 @@ contains
       length = number_length(reader%text(reader%place:))
       last = word_end(reader, digits//letters//'.')
       if (length == 0 .or. last >= reader%place + length) then
-         call blame(reader, "'"//slice(reader%text, reader%place, last)//"' is not a number")
+         call blame(reader, "'"//shown(slice(reader%text, reader%place, last)) &
+            //"' is not a number")
          return
       end if
       number = slice(reader%text, reader%place, reader%place + length - 1)
@@ -259,7 +260,7 @@ contains
       else if (any(words_of_no_number == name)) then
          call blame(reader, "'"//name//"' is not a number")
       else
-         call blame(reader, "unknown name '"//name//"'"//hint(reader, name))
+         call blame(reader, "unknown name '"//shown(name)//"'"//hint(reader, name))
          reader%unknown = .true.
       end if
    end subroutine read_name
@@ -366,11 +367,12 @@ contains
       type(reader_t), intent(in) :: reader
       character(len=*), intent(in) :: text
       logical :: does
+      integer :: first
 
       does = .false.
-      if (next(reader) == '') return
-      does = index(reader%text(reader%place + verify(reader%text(reader%place:), blanks) - 1:), &
-         text) == 1
+      first = reader%place + verify(reader%text(reader%place:), blanks) - 1
+      if (first < reader%place .or. first + len(text) - 1 > len(reader%text)) return
+      does = slice(reader%text, first, first + len(text) - 1) == text
    end function starts_with
 
    !> Go over blanks, then over `count` characters, then over blanks.
