@@ -7,13 +7,14 @@ module xmpm_deck_units
 
    public :: si_factor, unit_text, sound_speed
 
-   character(len=12), parameter :: dimensions(10) = [character(len=12) :: 'length', 'mass', &
+   character(len=16), parameter :: dimensions(13) = [character(len=16) :: 'length', 'mass', &
       'time', 'velocity', &
-      'acceleration', 'rate', 'density', 'stress', 'toughness', 'force']
+      'acceleration', 'rate', 'density', 'stress', 'toughness', 'force', 'energy', 'momentum', &
+      'angular momentum']
 
    !> Twice the powers of length, mass and time in each dimension.
-   integer, parameter :: powers(3, 10) = reshape([2, 0, 0, 0, 2, 0, 0, 0, 2, 2, 0, -2, 2, 0, -4, &
-      0, 0, -2, -6, 2, 0, -2, 2, -4, -1, 2, -4, 2, 2, -4], [3, 10])
+   integer, parameter :: powers(3, 13) = reshape([2, 0, 0, 0, 2, 0, 0, 0, 2, 2, 0, -2, 2, 0, -4, &
+      0, 0, -2, -6, 2, 0, -2, 2, -4, -1, 2, -4, 2, 2, -4, 4, 2, -4, 2, 2, -2, 4, 2, -2], [3, 13])
 
 contains
 
@@ -65,6 +66,9 @@ contains
       case ('stress'); text = m//'/('//l//' '//t//'2)'
       case ('toughness'); text = m//'/('//l//'^0.5 '//t//'2)'
       case ('force'); text = m//' '//l//'/'//t//'2'
+      case ('energy'); text = m//' '//l//'2/'//t//'2'
+      case ('momentum'); text = m//' '//l//'/'//t
+      case ('angular momentum'); text = m//' '//l//'2/'//t
       case ('angle'); text = 'deg'
       case default; text = ''
       end select

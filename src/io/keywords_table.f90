@@ -289,8 +289,7 @@ contains
          meaning='interval of the ParaView files; start and end of the run where not given'))
       call add_key(t, key_t(name='particles', kind=kind_word, most=any_number, &
          default='displacement velocity stress', &
-         words='displacement gradient velocity stress energy material body psi phi side '// &
-         'id rank none', &
+         words='displacement velocity stress energy material body psi phi side id rank none', &
          meaning='fields of the particles'))
       call add_key(t, key_t(name='crack', kind=kind_word, most=any_number, default='opening', &
          words='opening displacement normal none', meaning='fields of the crack surfaces'))

@@ -14,6 +14,7 @@ module xmpm_elastic
    contains
       procedure :: update => update_elastic
       procedure :: wave_speed
+      procedure :: strain_energy
    end type elastic_t
 
 contains
@@ -39,6 +40,16 @@ contains
 
       speed = sqrt((law%lambda + 2*law%mu)/law%density)
    end function wave_speed
+
+   !> Elastic energy per volume: (s : s - lambda/(3 lambda + 2 mu) (tr s)**2)/(4 mu).
+   pure function strain_energy(law, stress) result(energy)
+      class(elastic_t), intent(in) :: law
+      real(wp), intent(in) :: stress(6)   !! xx yy zz xy yz xz
+      real(wp) :: energy                  !! [stress]
+
+      energy = (sum(stress(:3)**2) + 2*sum(stress(4:)**2) &
+         - law%lambda/(3*law%lambda + 2*law%mu)*sum(stress(:3))**2)/(4*law%mu)
+   end function strain_energy
 
    !> Stress, volume and stress work of one step.
    !>

@@ -13,6 +13,7 @@ module xmpm_law
    contains
       procedure(update_i), deferred :: update
       procedure(speed_i), deferred :: wave_speed
+      procedure(energy_i), deferred :: strain_energy
    end type law_t
 
    abstract interface
@@ -32,5 +33,13 @@ module xmpm_law
          class(law_t), intent(in) :: law
          real(wp) :: speed
       end function speed_i
+
+      !> Elastic energy per volume that goes with a stress [stress].
+      pure function energy_i(law, stress) result(energy)
+         import :: law_t, wp
+         class(law_t), intent(in) :: law
+         real(wp), intent(in) :: stress(6)   !! xx yy zz xy yz xz
+         real(wp) :: energy
+      end function energy_i
    end interface
 end module xmpm_law
