@@ -9,7 +9,7 @@ module xmpm_deck_data
    private
 
    public :: deck_t, block_t, entry_t
-   public :: count_blocks, find_block, block_named, names_of_blocks, entry_place
+   public :: count_blocks, find_block, block_named, collect_names, entry_place
    public :: has, given, valid, real_of, reals_of, integer_of, text_of, texts_of, flag_of
    public :: complain, warn, note_problem, problems, warnings_of, add_block, add_entry
 
@@ -100,10 +100,10 @@ contains
    end function block_named
 
    !> Names of all blocks of a keyword that have one.
-   pure function names_of_blocks(deck, keyword) result(names)
-      type(deck_t), intent(in) :: deck          !! parsed
-      character(len=*), intent(in) :: keyword   !! for example 'material'
-      type(string_t), allocatable :: names(:)
+   pure subroutine collect_names(deck, keyword, names)
+      type(deck_t), intent(in) :: deck                         !! parsed
+      character(len=*), intent(in) :: keyword                  !! for example 'material'
+      type(string_t), allocatable, intent(out) :: names(:)     !! in written order
       integer :: i
 
       allocate (names(0))
@@ -111,7 +111,7 @@ contains
          if (deck%blocks(i)%keyword == keyword .and. len(deck%blocks(i)%name) > 0) &
             call append(names, deck%blocks(i)%name)
       end do
-   end function names_of_blocks
+   end subroutine collect_names
 
    !> Place of the first entry of a key; 0 where there is none.
    pure function entry_place(block, key) result(place)

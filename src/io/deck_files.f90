@@ -61,7 +61,13 @@ contains
       character(len=:), allocatable, intent(inout) :: fault   !! set where it cannot be opened
       integer :: unit, status
       character(len=200) :: message
+      logical :: is_folder
 
+      inquire (file=path//'/.', exist=is_folder)
+      if (is_folder) then
+         fault = 'it is a folder, not a file'
+         return
+      end if
       open (newunit=unit, file=path, status='old', action='read', iostat=status, iomsg=message)
       if (status /= 0) then
          fault = 'the file cannot be opened: '//trim(message)

@@ -76,8 +76,23 @@ contains
             exit
          end if
          first = last + 2
+         if (too_many_problems(deck)) then
+            call note_problem(deck, row, place_of_row(tokens, row)//'too many problems: is this ' &
+               //'a deck? The rest is not read')
+            exit
+         end if
       end do
    end subroutine cut_into_tokens
+
+   !> Whether so much is wrong with the characters alone that the text is hardly a deck.
+   pure function too_many_problems(deck) result(too_many)
+      type(deck_t), intent(in) :: deck
+      logical :: too_many
+      integer, parameter :: most = 100
+
+      too_many = .false.
+      if (allocated(deck%problems)) too_many = size(deck%problems) >= most
+   end function too_many_problems
 
    !> 'file:line: ' of a row.
    pure function place_of_row(tokens, row) result(text)

@@ -4,7 +4,7 @@ module xmpm_deck_references
    use xmpm_text_lists, only: append, upper
    use xmpm_keywords, only: split_words
    use xmpm_deck_data, only: deck_t, block_t, has, valid, text_of, complain, find_block, &
-      count_blocks, block_named, names_of_blocks
+      count_blocks, block_named, collect_names
    use xmpm_deck_choices, only: set_texts
    use xmpm_deck_hints, only: did_you_mean
    implicit none
@@ -59,7 +59,7 @@ contains
       type(string_t), allocatable :: names(:), words(:)
       integer :: i
 
-      names = names_of_blocks(deck, keyword)
+      call collect_names(deck, keyword, names)
       if (present(also)) then
          call split_words(also, words)
          do i = 1, size(words)

@@ -2,7 +2,6 @@
 program test_deck
    use xmpm_kinds, only: wp
    use xmpm_error, only: error_t, code_usage, code_files
-   use xmpm_text, only: string_t
    use xmpm_deck, only: deck_t, block_t, parse_deck, read_deck, deck_echo, count_blocks, &
       find_block, &
       block_named, has, given, real_of, reals_of, integer_of, text_of, texts_of, flag_of, &
@@ -147,7 +146,6 @@ contains
 
    subroutine fills_in_defaults()
       type(block_t) :: block
-      type(string_t), allocatable :: fields(:)
 
       call parse_with('*CRACK c disc centre=0 0 0 along=1 0 0 across=0 1 0 radius=1|*PROBE p ' &
          //'point=1 1 1|' &
@@ -174,9 +172,9 @@ contains
          0.0_wp)
       call check_close(suite, 'and so is the history', real_of(block, 'history'), 0.5_wp, &
          0.0_wp, 0.0_wp)
-      fields = texts_of(block, 'particles')
       call check(suite, 'lists of words have defaults', &
-         size(fields) == 3 .and. fields(2)%s == 'velocity')
+         size(texts_of(block, 'particles')) == 3 &
+         .and. text_of(block, 'particles') == 'displacement')
       call check(suite, 'a probe writes displacement', &
          text_of(find_block(deck, 'probe', 1), 'quantity') == 'displacement')
       call check(suite, 'a boundary holds all components', &
@@ -317,6 +315,9 @@ contains
       call refuse('*BODY "b material=alloy|', 'a quote is opened and not closed on this line')
       call refuse('*DAMPING pic=(1|+1)|', 'a parenthesis is opened and not closed on this line')
       call refuse('*DAMPING pic=1'//achar(0)//'|', 'the line holds a control character (code 0)')
+      call parse(repeat(achar(3)//'|', 200))
+      call check_error(suite, 'a text that is no deck is given up', error, &
+         'test.inp:100: too many problems: is this a deck? The rest is not read')
       call refuse('*DAMPING pic=1'//achar(127)//'|', &
          'the line holds a control character (code 127)')
    end subroutine refuses_wrong_syntax
@@ -605,6 +606,8 @@ contains
       call check_error(suite, 'a deck that is not there is an error', error, &
          'no/such/deck.inp: the file cannot be opened')
       call check(suite, 'of files', error%code == code_files)
+      call read_deck('.', text, error)
+      call check_error(suite, 'a folder is no deck', error, 'it is a folder, not a file')
       call includes_only_so_deep()
    end subroutine includes_files
 

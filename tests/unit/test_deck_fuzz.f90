@@ -66,7 +66,8 @@ contains
             if (len_trim(error%message) == 0) silent = silent + 1
          else
             accepted = accepted + 1
-            if (sane) sane = all_finite(deck) .and. echo_is_the_same(deck)
+            sane = all_finite(deck)
+            if (sane) sane = echo_is_the_same(deck)
             if (.not. sane) exit
          end if
       end do
