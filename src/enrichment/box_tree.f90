@@ -1,4 +1,5 @@
-!> A tree of boxes over items in space (triangles, edges), so that the nearest is found without looking at all.
+!> A tree of boxes over items in space (triangles, edges), so that the nearest is found without
+!> looking at all.
 module xmpm_box_tree
    use xmpm_kinds, only: wp
    implicit none
@@ -9,9 +10,10 @@ module xmpm_box_tree
    integer, parameter :: leaf_size = 4     !! most items in a leaf
    integer, parameter :: tree_depth = 64   !! places that a walk through a tree needs at most
 
-   !> Nodes in depth-first order: the first child of a node stands behind it, so children have larger numbers.
+   !> Nodes in depth-first order: the first child of a node stands behind it, so children have
+   !> larger numbers.
    type :: box_tree_t
-      integer :: nodes = 0                   !! number of nodes; the root is 1, none if there are no items
+      integer :: nodes = 0   !! number of nodes; the root is 1, none if there are no items
       real(wp), allocatable :: box(:, :)     !! (6, nodes) lowest and highest corner [length]
       integer, allocatable :: second(:)      !! (nodes) second child, 0 for a leaf
       integer, allocatable :: first(:)       !! (nodes) first place in `item` of a leaf
@@ -23,7 +25,8 @@ contains
 
    !> Build a tree over items that are given by their boxes.
    subroutine build_tree(box, tree)
-      real(wp), intent(in) :: box(:, :)         !! (6, items) lowest and highest corner of each item [length]
+      real(wp), intent(in) :: box(:, :)   !! (6, items) lowest and highest corner of each item
+                                          !! [length]
       type(box_tree_t), intent(out) :: tree     !! ready for walks
       integer :: i, n
 
@@ -37,7 +40,8 @@ contains
    !> Give the nodes the boxes of items that have moved; the tree stays as it is.
    subroutine refit_tree(tree, box)
       type(box_tree_t), intent(inout) :: tree   !! boxes are renewed
-      real(wp), intent(in) :: box(:, :)         !! (6, items) lowest and highest corner of each item [length]
+      real(wp), intent(in) :: box(:, :)   !! (6, items) lowest and highest corner of each item
+                                          !! [length]
       integer :: node, i
 
       do node = tree%nodes, 1, -1
@@ -70,7 +74,8 @@ contains
       box(4:6) = max(a(4:6), b(4:6))
    end function joined
 
-   !> Make a node of the items from `first` to `last`: halve them along the longest direction until few are left.
+   !> Make a node of the items from `first` to `last`: halve them along the longest direction
+   !> until few are left.
    recursive subroutine split(tree, box, first, last)
       type(box_tree_t), intent(inout) :: tree
       real(wp), intent(in) :: box(:, :)
@@ -95,7 +100,8 @@ contains
       call split(tree, box, middle + 1, last)
    end subroutine split
 
-   !> Heap sort of items by the middle of their boxes; equal ones by number, so that the order is always the same.
+   !> Heap sort of items by the middle of their boxes; equal ones by number, so that the order is
+   !> always the same.
    pure subroutine sort_items(item, box, axis)
       integer, intent(inout) :: item(:)
       real(wp), intent(in) :: box(:, :)

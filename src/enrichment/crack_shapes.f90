@@ -13,27 +13,29 @@ module xmpm_crack_shapes
 
    !> Place of a shape in space: its normal is along x across.
    type :: crack_plane_t
-      real(wp) :: centre(3) = 0.0_wp                       !! middle of the shape [length]
-      real(wp) :: along(3) = [1.0_wp, 0.0_wp, 0.0_wp]      !! unit vector of the width or first semi-axis
-      real(wp) :: across(3) = [0.0_wp, 1.0_wp, 0.0_wp]     !! unit vector of the depth or second semi-axis
+      real(wp) :: centre(3) = 0.0_wp                     !! middle of the shape [length]
+      real(wp) :: along(3) = [1.0_wp, 0.0_wp, 0.0_wp]    !! unit vector of width or first semi-axis
+      real(wp) :: across(3) = [0.0_wp, 1.0_wp, 0.0_wp]   !! that of depth or second semi-axis
    end type crack_plane_t
 
-   real(wp), parameter :: square = 1.0e-3_wp   !! largest cosine between along and across that is only turned right
-   real(wp), parameter :: planar = 1.0e-6_wp   !! largest distance of a polygon's point from its plane over its size
+   real(wp), parameter :: square = 1.0e-3_wp   !! cosine up to which across is turned right
+   real(wp), parameter :: planar = 1.0e-6_wp   !! distance of a point from its plane over the size
 
 contains
 
    !> Set a plane from a centre and two directions of any length.
    subroutine set_plane(centre, along, across, plane, error)
       real(wp), intent(in) :: centre(3)                  !! middle of the shape [length]
-      real(wp), intent(in) :: along(3)                   !! direction of the width or first semi-axis
-      real(wp), intent(in) :: across(3)                  !! direction of the depth or second semi-axis, at right angles to it
+      real(wp), intent(in) :: along(3)   !! direction of the width or first semi-axis
+      real(wp), intent(in) :: across(3)   !! direction of the depth or second semi-axis, at right
+                                          !! angles to it
       type(crack_plane_t), intent(out) :: plane          !! centre and unit vectors
       type(error_t), allocatable, intent(out) :: error   !! set where the directions span no plane
       real(wp) :: cosine
 
       if (.not. (norm2(along) > 0.0_wp .and. norm2(across) > 0.0_wp)) then
-         call raise(error, code_usage, 'crack: along ('//to_text(along)//') and across ('//to_text(across)// &
+         call raise(error, code_usage, 'crack: along ('//to_text(along)//') and across ('// &
+            to_text(across)// &
             ') must both have a length')
          return
       end if
@@ -41,7 +43,8 @@ contains
       plane%along = unit_vector(along)
       cosine = dot_product(plane%along, unit_vector(across))
       if (.not. abs(cosine) <= square) then
-         call raise(error, code_usage, 'crack: along ('//to_text(along)//') and across ('//to_text(across)// &
+         call raise(error, code_usage, 'crack: along ('//to_text(along)//') and across ('// &
+            to_text(across)// &
             ') must be at right angles; the cosine between them is '//to_text(cosine))
          return
       end if
@@ -63,7 +66,8 @@ contains
 
       call check_sizes('rectangle', 'width and depth', sizes, element, error)
       if (allocated(error)) return
-      edge = min(element, 2.4_wp*minval(sizes))   ! a strip thinner than the element keeps angles above 20 degrees
+      ! A strip thinner than the element keeps angles above 20 degrees.
+      edge = min(element, 2.4_wp*minval(sizes))
       n = max(1, nint(sizes/edge))
       allocate (x(3, (n(1) + 1)*(n(2) + 1)), tri(3, 2*n(1)*n(2)))
       t = 0
@@ -87,18 +91,22 @@ contains
 
    !> A plane polygon of any simple form; its normal is right-handed about the order of its points.
    subroutine make_polygon(points, element, x, tri, error)
-      real(wp), intent(in) :: points(:, :)               !! (3, n) corners in order, the first not repeated [length]
+      real(wp), intent(in) :: points(:, :)   !! (3, n) corners in order, the first not repeated
+                                             !! [length]
       real(wp), intent(in) :: element                    !! wanted edge of the triangles [length]
-      real(wp), allocatable, intent(out) :: x(:, :)      !! (3, nv) vertices, the corners among them [length]
+      real(wp), allocatable, intent(out) :: x(:, :)   !! (3, nv) vertices, the corners among them
+                                                      !! [length]
       integer, allocatable, intent(out) :: tri(:, :)     !! (3, nt) triangles
-      type(error_t), allocatable, intent(out) :: error   !! set where the points form no plane simple polygon
+      type(error_t), allocatable, intent(out) :: error   !! set where the points form no plane
+                                                         !! simple polygon
       type(crack_plane_t) :: plane
       real(wp) :: normal(3), extent
       integer :: i, n
 
       n = size(points, 2)
       if (n < 3) then
-         call raise(error, code_usage, 'crack polygon: it has '//to_text(n)//' points; at least 3 are needed')
+         call raise(error, code_usage, 'crack polygon: it has '//to_text(n)// &
+            ' points; at least 3 are needed')
          return
       end if
       extent = norm2(maxval(points, 2) - minval(points, 2))
@@ -110,7 +118,8 @@ contains
          associate (a => points(:, i), b => points(:, modulo(i, n) + 1))
             normal = normal + cross(a - plane%centre, b - plane%centre)
             if (norm2(b - a) <= planar*extent) call raise(error, code_usage, &
-               'crack polygon: point '//to_text(i)//' and the next are one and the same; name each once')
+               'crack polygon: point '//to_text(i)// &
+               ' and the next are one and the same; name each once')
          end associate
       end do
       if (allocated(error)) return
@@ -120,7 +129,8 @@ contains
       end if
       call lay_plane(points, unit_vector(normal), plane, extent, error)
       if (allocated(error)) return
-      call fill_outline(plane, divide_edges(in_plane(plane, points), element), element, 'polygon', x, tri, error)
+      call fill_outline(plane, divide_edges(in_plane(plane, points), element), element, &
+         'polygon', x, tri, error)
    end subroutine make_polygon
 
    !> A disc: rings of triangles about the centre, six sides in the first ring.
@@ -128,7 +138,8 @@ contains
       type(crack_plane_t), intent(in) :: plane           !! centre and directions
       real(wp), intent(in) :: radius                     !! [length]
       real(wp), intent(in) :: element                    !! wanted edge of the triangles [length]
-      real(wp), allocatable, intent(out) :: x(:, :)      !! (3, nv) vertices, those of the rim exactly on the circle [length]
+      real(wp), allocatable, intent(out) :: x(:, :)   !! (3, nv) vertices, those of the rim exactly
+                                                      !! on the circle [length]
       integer, allocatable, intent(out) :: tri(:, :)     !! (3, nt) triangles
       type(error_t), allocatable, intent(out) :: error   !! set where a size is not positive
       integer :: rings, k, j, v
@@ -144,29 +155,33 @@ contains
          do j = 0, 6*k - 1
             v = v + 1
             angle = pi*real(j, wp)/real(3*k, wp)
-            x(:, v) = plane%centre + radius*real(k, wp)/real(rings, wp)*(cos(angle)*plane%along + sin(angle)*plane%across)
+            x(:, v) = plane%centre + radius*real(k, wp)/real(rings, wp)*(cos(angle)*plane%along &
+               + sin(angle)*plane%across)
          end do
       end do
       call join_rings(rings, tri)
    end subroutine make_disc
 
-   !> Triangles between ring k - 1 and ring k, six sectors each: k outer and k - 1 inner edges a sector.
+   !> Triangles between ring k - 1 and ring k, six sectors each: k outer and k - 1 inner edges a
+   !> sector.
    pure subroutine join_rings(rings, tri)
       integer, intent(in) :: rings
       integer, intent(out) :: tri(:, :)
-      integer :: k, sector, j, t
+      integer :: k, sector, j, t, outer, inner
 
       t = 0
       do k = 1, rings
          do sector = 0, 5
             do j = 0, k - 1
                t = t + 1
-               tri(:, t) = [ring_point(k, sector*k + j), ring_point(k, sector*k + j + 1), &
-                  ring_point(k - 1, sector*(k - 1) + j)]
+               outer = sector*k + j
+               inner = sector*(k - 1) + j
+               tri(:, t) = [ring_point(k, outer), ring_point(k, outer + 1), &
+                  ring_point(k - 1, inner)]
                if (j == k - 1) cycle
                t = t + 1
-               tri(:, t) = [ring_point(k - 1, sector*(k - 1) + j), ring_point(k, sector*k + j + 1), &
-                  ring_point(k - 1, sector*(k - 1) + j + 1)]
+               tri(:, t) = [ring_point(k - 1, inner), ring_point(k, outer + 1), &
+                  ring_point(k - 1, inner + 1)]
             end do
          end do
       end do
@@ -185,7 +200,8 @@ contains
       type(crack_plane_t), intent(in) :: plane           !! centre and directions
       real(wp), intent(in) :: semi_axes(2)               !! along and across [length]
       real(wp), intent(in) :: element                    !! wanted edge of the triangles [length]
-      real(wp), allocatable, intent(out) :: x(:, :)      !! (3, nv) vertices, those of the rim exactly on the ellipse [length]
+      real(wp), allocatable, intent(out) :: x(:, :)   !! (3, nv) vertices, those of the rim exactly
+                                                      !! on the ellipse [length]
       integer, allocatable, intent(out) :: tri(:, :)     !! (3, nt) triangles
       type(error_t), allocatable, intent(out) :: error   !! set where a size is not positive
       real(wp), allocatable :: quarter(:, :), rim(:, :)
@@ -208,21 +224,28 @@ contains
    !> The part of a disc or ellipse between two angles, measured from along towards across.
    subroutine make_sector(plane, semi_axes, angles, element, x, tri, error)
       type(crack_plane_t), intent(in) :: plane           !! centre and directions
-      real(wp), intent(in) :: semi_axes(2)               !! along and across, equal for a disc [length]
+      real(wp), intent(in) :: semi_axes(2)   !! along and across, equal for a disc [length]
       real(wp), intent(in) :: angles(2)                  !! from, to [degrees]
       real(wp), intent(in) :: element                    !! wanted edge of the triangles [length]
-      real(wp), allocatable, intent(out) :: x(:, :)      !! (3, nv) vertices, those of the arc exactly on the curve [length]
+      real(wp), allocatable, intent(out) :: x(:, :)   !! (3, nv) vertices, those of the arc exactly
+                                                      !! on the curve [length]
       integer, allocatable, intent(out) :: tri(:, :)     !! (3, nt) triangles
-      type(error_t), allocatable, intent(out) :: error   !! set where a size is not positive or the angles are wrong
+      type(error_t), allocatable, intent(out) :: error   !! set where a size is not positive or the
+                                                         !! angles are wrong
       real(wp), allocatable :: arc(:, :), first(:, :), last(:, :)
       real(wp) :: t(2)
       integer :: n
 
       call check_sizes('sector', 'semi-axes', semi_axes, element, error)
       if (allocated(error)) return
-      if (.not. (angles(2) > angles(1) .and. angles(2) - angles(1) < 360.0_wp)) then
-         call raise(error, code_usage, 'crack sector: it goes from '//to_text(angles(1))//' to '//to_text(angles(2))// &
-            ' degrees; the second angle must be larger, by less than 360')
+      if (.not. (angles(2) > angles(1) .and. angles(2) - angles(1) <= 360.0_wp)) then
+         call raise(error, code_usage, 'crack sector: it goes from '//to_text(angles(1))// &
+            ' to '//to_text(angles(2))// &
+            ' degrees; the second angle must be larger, by 360 at most')
+         return
+      end if
+      if (angles(2) - angles(1) >= 360.0_wp) then
+         call make_whole(plane, semi_axes, element, x, tri, error)
          return
       end if
       t = [parameter_angle(semi_axes, angles(1)), parameter_angle(semi_axes, angles(2))]
@@ -232,10 +255,27 @@ contains
       arc(:, n + 1) = rim_point(semi_axes, angles(2))
       first = divide_line([0.0_wp, 0.0_wp], arc(:, 1), element)
       last = divide_line(arc(:, n + 1), [0.0_wp, 0.0_wp], element)
-      if (abs(angles(2) - angles(1) - 180.0_wp) <= 0.0_wp) first(:, 1) = 0.5_wp*(arc(:, 1) + arc(:, n + 1))
-      call fill_outline(plane, reshape([first, arc(:, :n), last], [2, size(first, 2) + n + size(last, 2)]), &
+      if (abs(angles(2) - angles(1) - 180.0_wp) <= 0.0_wp) first(:, 1) = 0.5_wp*(arc(:, 1) &
+         + arc(:, n + 1))
+      n = size(first, 2) + n + size(last, 2)
+      call fill_outline(plane, reshape([first, arc(:, :size(arc, 2) - 1), last], [2, n]), &
          element, 'sector', x, tri, error)
    end subroutine make_sector
+
+   !> A sector of 360 degrees.
+   subroutine make_whole(plane, semi_axes, element, x, tri, error)
+      type(crack_plane_t), intent(in) :: plane
+      real(wp), intent(in) :: semi_axes(2), element
+      real(wp), allocatable, intent(out) :: x(:, :)
+      integer, allocatable, intent(out) :: tri(:, :)
+      type(error_t), allocatable, intent(out) :: error
+
+      if (abs(semi_axes(1) - semi_axes(2)) > 0.0_wp) then
+         call make_ellipse(plane, semi_axes, element, x, tri, error)
+      else
+         call make_disc(plane, semi_axes(1), element, x, tri, error)
+      end if
+   end subroutine make_whole
 
    !> Point of the rim under a direction; exact where the direction is an axis.
    pure function rim_point(semi_axes, degrees) result(p)
@@ -353,7 +393,8 @@ contains
       ok = signed_area(rim) > 0.0_wp
       if (ok) call mesh_polygon(rim, element, mesh, ok)
       if (.not. ok) then
-         call raise(error, code_usage, 'crack '//name//': its outline crosses or touches itself; it must be simple')
+         call raise(error, code_usage, 'crack '//name// &
+            ': its outline crosses or touches itself; it must be simple')
          return
       end if
       allocate (x(3, mesh%points))
@@ -384,13 +425,16 @@ contains
       real(wp) :: off
       integer :: i
 
-      plane%along = unit_vector(points(:, 2) - points(:, 1) - dot_product(points(:, 2) - points(:, 1), normal)*normal)
+      plane%along = unit_vector(points(:, 2) - points(:, 1) - dot_product(points(:, 2) &
+         - points(:, 1), normal)*normal)
       plane%across = cross(normal, plane%along)
       do i = 1, size(points, 2)
          off = abs(dot_product(points(:, i) - plane%centre, normal))
          if (off <= planar*extent) cycle
-         call raise(error, code_usage, 'crack polygon: point '//to_text(i)//' at '//to_text(points(:, i))//' lies '// &
-            to_text(off)//' off the plane of the others; all must lie in one plane (write a bent crack as a file)')
+         call raise(error, code_usage, 'crack polygon: point '//to_text(i)//' at '// &
+            to_text(points(:, i))//' lies '// &
+            to_text(off)//' off the plane of the others; all must lie in one plane '// &
+            '(write a bent crack as a file)')
          return
       end do
    end subroutine lay_plane
@@ -402,9 +446,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. all(sizes > 0.0_wp .and. sizes < huge(1.0_wp))) then
-         call raise(error, code_usage, 'crack '//name//': '//what//' = '//to_text(sizes)//'; must be positive')
+         call raise(error, code_usage, 'crack '//name//': '//what//' = '//to_text(sizes)// &
+            '; must be positive')
       else if (.not. (element > 0.0_wp .and. element < huge(1.0_wp))) then
-         call raise(error, code_usage, 'crack '//name//': element = '//to_text(element)//'; must be positive')
+         call raise(error, code_usage, 'crack '//name//': element = '//to_text(element)// &
+            '; must be positive')
       end if
    end subroutine check_sizes
 end module xmpm_crack_shapes

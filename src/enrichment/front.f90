@@ -1,4 +1,5 @@
-!> Crack fronts: the boundary edges of a surface that lie inside the material, in chains with frames.
+!> Crack fronts: the boundary edges of a surface that lie inside the material, in chains with
+!> frames.
 module xmpm_front
    use xmpm_kinds, only: wp
    use xmpm_surface, only: surface_t
@@ -8,11 +9,12 @@ module xmpm_front
    private
 
    public :: front_t, front_place_t
-   public :: front_test_points, mark_front, refresh_front, nearest_on_front, frame_on_front, vertex_phi
+   public :: front_test_points, mark_front, refresh_front, nearest_on_front, frame_on_front, &
+      vertex_phi
    public :: fully_cracked, beyond_reach
 
-   real(wp), parameter :: fully_cracked = -1.0e30_wp   !! phi where no front is near: the crack goes through [length]
-   real(wp), parameter :: beyond_reach = 1.0e30_wp     !! psi and phi of a point that is too far from a crack [length]
+   real(wp), parameter :: fully_cracked = -1.0e30_wp   !! phi where no front is near [length]
+   real(wp), parameter :: beyond_reach = 1.0e30_wp     !! psi, phi of a point too far away [length]
 
    !> All fronts of one crack; nodes and edges follow each other along e3, chain after chain.
    type :: front_t
@@ -20,26 +22,26 @@ module xmpm_front
       integer :: edge_count = 0                 !! nf
       integer :: chain_count = 0                !! nc
       integer, allocatable :: vertex(:)         !! (nn) vertex of the surface at a node
-      integer, allocatable :: node_edge(:, :)   !! (2, nn) edges that arrive at and leave a node, 0 at an open end
-      integer, allocatable :: edge_node(:, :)   !! (2, nf) nodes where an edge starts and ends
+      integer, allocatable :: node_edge(:, :)   !! (2,nn) edges that arrive and leave, 0 at an end
+      integer, allocatable :: edge_node(:, :)   !! (2,nf) nodes where an edge starts and ends
       integer, allocatable :: surface_edge(:)   !! (nf) edge of the surface
-      integer, allocatable :: chain_offset(:)   !! (nc + 1) chain c has nodes offset(c) .. offset(c+1)-1
-      logical, allocatable :: closed(:)         !! (nc) whether the last node of a chain is followed by the first
-      integer, allocatable :: edge_of(:)        !! (ne of the surface) front edge, 0 where the edge is no front
-      integer, allocatable :: node_of(:)        !! (nv of the surface) front node, 0 where the vertex is on no front
-      real(wp), allocatable :: x(:, :)          !! (3, nn) positions [length]
+      integer, allocatable :: chain_offset(:)   !! (nc+1) first node of each chain
+      logical, allocatable :: closed(:)         !! (nc) whether the first node follows the last
+      integer, allocatable :: edge_of(:)        !! (ne) front edge of an edge of the surface, or 0
+      integer, allocatable :: node_of(:)        !! (nv) front node of a vertex of the surface, or 0
+      real(wp), allocatable :: x(:, :)          !! (3,nn) positions [length]
       real(wp), allocatable :: s(:)             !! (nn) length along the chain [length]
       real(wp), allocatable :: length(:)        !! (nc) length of the chains [length]
-      real(wp), allocatable :: e1(:, :)         !! (3, nn) ahead in the surface
-      real(wp), allocatable :: e2(:, :)         !! (3, nn) normal of the surface
-      real(wp), allocatable :: e3(:, :)         !! (3, nn) along the front, e1 x e2
-      real(wp), allocatable :: edge_e1(:, :)    !! (3, nf) ahead in the triangle at an edge
+      real(wp), allocatable :: e1(:, :)         !! (3,nn) ahead in the surface
+      real(wp), allocatable :: e2(:, :)         !! (3,nn) normal of the surface
+      real(wp), allocatable :: e3(:, :)         !! (3,nn) along the front, e1 x e2
+      real(wp), allocatable :: edge_e1(:, :)    !! (3,nf) ahead in the triangle at an edge
       type(box_tree_t) :: tree                  !! boxes of the edges
    end type front_t
 
    !> The nearest point of a front.
    type :: front_place_t
-      integer :: edge = 0                    !! front edge that holds it, 0 where there is none within reach
+      integer :: edge = 0                    !! front edge that holds it, 0 for none within reach
       integer :: node = 0                    !! front node where it is one, else 0
       real(wp) :: fraction = 0.0_wp          !! place on the edge, 0 to 1
       real(wp) :: distance = 0.0_wp          !! from the point asked for [length]
@@ -48,17 +50,18 @@ module xmpm_front
 
 contains
 
-   !> Points just ahead of the boundary edges: where there is material at such a point, its edge is a front.
+   !> Points just ahead of the boundary edges: where there is material at such a point, its edge
+   !> is a front.
    subroutine front_test_points(surface, h, points)
       type(surface_t), intent(in) :: surface                !! mesh
       real(wp), intent(in) :: h                             !! cell size [length]
-      real(wp), allocatable, intent(out) :: points(:, :)    !! (3, nb) one for each of `surface%boundary` [length]
+      real(wp), allocatable, intent(out) :: points(:, :)    !! (3,nb) of `surface%boundary` [length]
       integer :: i, e
 
       allocate (points(3, size(surface%boundary)))
       do i = 1, size(surface%boundary)
          e = surface%boundary(i)
-         points(:, i) = 0.5_wp*(surface%x(:, surface%edge(1, e)) + surface%x(:, surface%edge(2, e))) &
+         points(:, i) = 0.5_wp*sum(surface%x(:, surface%edge(:, e)), 2) &
             + 0.3_wp*h*ahead_of_edge(surface, e)
       end do
    end subroutine front_test_points
@@ -66,30 +69,35 @@ contains
    !> Make the boundary edges that lie inside the material the fronts of a crack.
    subroutine mark_front(surface, inside, front)
       type(surface_t), intent(in) :: surface    !! mesh
-      logical, intent(in) :: inside(:)          !! (nb) whether there is material at the points of `front_test_points`
+      logical, intent(in) :: inside(:)          !! (nb) whether material is at each test point
       type(front_t), intent(out) :: front       !! chains of edges and their frames
       integer :: loop, nf
 
       nf = count(inside)
       allocate (front%vertex(2*nf), front%edge_node(2, nf), front%surface_edge(nf))
-      allocate (front%node_edge(2, 2*nf), front%edge_of(surface%edge_count), front%node_of(surface%vertex_count), source=0)
+      allocate (front%node_edge(2, 2*nf), front%edge_of(surface%edge_count), &
+         front%node_of(surface%vertex_count), source=0)
       allocate (front%chain_offset(nf + 1), front%closed(nf))
       front%chain_offset(1) = 1
       do loop = 1, size(surface%loop_offset) - 1
-         call chain_loop(surface, inside, surface%loop_offset(loop), surface%loop_offset(loop + 1) - 1, front)
+         call chain_loop(surface, inside, surface%loop_offset(loop), &
+            surface%loop_offset(loop + 1) - 1, front)
       end do
       front%vertex = front%vertex(:front%node_count)
       front%node_edge = front%node_edge(:, :front%node_count)
       front%chain_offset = front%chain_offset(:front%chain_count + 1)
       front%closed = front%closed(:front%chain_count)
-      allocate (front%x(3, front%node_count), front%s(front%node_count), front%length(front%chain_count))
-      allocate (front%e1(3, front%node_count), front%e2(3, front%node_count), front%e3(3, front%node_count))
+      allocate (front%x(3, front%node_count), front%s(front%node_count), &
+         front%length(front%chain_count))
+      allocate (front%e1(3, front%node_count), front%e2(3, front%node_count), &
+         front%e3(3, front%node_count))
       allocate (front%edge_e1(3, nf))
       call set_positions(surface, front)
       call build_tree(edge_boxes(surface%rounding, front), front%tree)
    end subroutine mark_front
 
-   !> Renew positions, lengths and frames after the surface has moved; the front edges stay the same.
+   !> Renew positions, lengths and frames after the surface has moved; the front edges stay the
+   !> same.
    subroutine refresh_front(surface, front)
       type(surface_t), intent(in) :: surface    !! mesh after `refresh_geometry`
       type(front_t), intent(inout) :: front     !! its fronts
@@ -124,8 +132,10 @@ contains
          else
             child = front%tree%second(node)
             waiting(count + 1:count + 2) = [child, node + 1]
-            if (box_distance2(front%tree%box(:, child), x) < box_distance2(front%tree%box(:, node + 1), x)) &
+            if (box_distance2(front%tree%box(:, child), x) &
+               < box_distance2(front%tree%box(:, node + 1), x)) then
                waiting(count + 1:count + 2) = [node + 1, child]
+            end if
             count = count + 2
          end if
       end do
@@ -176,7 +186,8 @@ contains
       end associate
    end subroutine frame_on_front
 
-   !> Minus the distance of each vertex of the surface to the nearest front edge; `fully_cracked` without a front.
+   !> Minus the distance of each vertex of the surface to the nearest front edge; `fully_cracked`
+   !> without a front.
    pure subroutine vertex_phi(surface, front, phi)
       type(surface_t), intent(in) :: surface   !! mesh
       type(front_t), intent(in) :: front       !! its fronts
@@ -316,7 +327,8 @@ contains
 
    !> Direction of a front at a node: that of the parabola through it and its neighbours.
    !>
-   !> At an open end the parabola through the last three nodes, unless the front turns by more than 30 degrees there.
+   !> At an open end the parabola through the last three nodes, unless the front turns by more
+   !> than 30 degrees there.
    pure function tangent_at(front, i) result(t)
       type(front_t), intent(in) :: front
       integer, intent(in) :: i

@@ -1,4 +1,5 @@
-!> The level sets of a crack: psi, the signed distance to its surface, and phi, the signed distance to its front.
+!> The level sets of a crack: psi, the signed distance to its surface, and phi, the signed
+!> distance to its front.
 module xmpm_level_sets
    use xmpm_kinds, only: wp
    use xmpm_surface, only: surface_t
@@ -10,24 +11,28 @@ module xmpm_level_sets
 
    public :: evaluate_level_sets, level_sets_at
 
-   real(wp), parameter :: smooth = 0.94_wp   !! cosine of the angle (20 degrees) up to which a rim counts as smooth
+   real(wp), parameter :: smooth = 0.94_wp   !! cosine of the angle (20 degrees) up to which a rim
+                                             !! counts as smooth
 
 contains
 
    !> psi, phi and the direction ahead of the front at many points.
    !>
-   !> psi > 0 on the plus side; past the rim of the surface psi goes on along its tangent plane, and psi is exactly 0
-   !> within rounding of the surface. phi = (x - nearest front point).e1, negative behind the front;
-   !> `fully_cracked` where no front is within reach. Points beyond reach of the surface get `beyond_reach` for both.
+   !> psi > 0 on the plus side; past the rim of the surface psi goes on along its tangent plane,
+   !> and psi is exactly 0 within rounding of the surface. phi = (x - nearest front point).e1,
+   !> negative behind the front; `fully_cracked` where no front is within reach. Points beyond
+   !> reach of the surface get `beyond_reach` for both.
    pure subroutine evaluate_level_sets(surface, index, front, reach, x, psi, phi, e1)
       type(surface_t), intent(in) :: surface         !! mesh
       type(surface_index_t), intent(in) :: index     !! its spatial index
       type(front_t), intent(in) :: front             !! its fronts
       real(wp), intent(in) :: reach                  !! largest distance of interest [length]
-      real(wp), intent(in) :: x(:, :)                !! (3, n) points, neighbours after each other for speed [length]
+      real(wp), intent(in) :: x(:, :)   !! (3, n) points, neighbours after each other for speed
+                                        !! [length]
       real(wp), intent(out) :: psi(:)                !! (n) signed distance to the surface [length]
       real(wp), intent(out) :: phi(:)                !! (n) signed distance to the front [length]
-      real(wp), intent(out) :: e1(:, :)              !! (3, n) gradient of phi, 0 where no front is within reach
+      real(wp), intent(out) :: e1(:, :)   !! (3, n) gradient of phi, 0 where no front is within
+                                          !! reach
       type(nearest_t) :: nearest
       integer :: i, hint
 
@@ -45,7 +50,7 @@ contains
       type(front_t), intent(in) :: front         !! its fronts
       real(wp), intent(in) :: reach              !! largest distance of interest [length]
       real(wp), intent(in) :: x(3)               !! point [length]
-      type(nearest_t), intent(in) :: nearest     !! nearest point of the surface, triangle 0 for none
+      type(nearest_t), intent(in) :: nearest   !! nearest point of the surface, triangle 0 for none
       real(wp), intent(out) :: psi               !! signed distance to the surface [length]
       real(wp), intent(out) :: phi               !! signed distance to the front [length]
       real(wp), intent(out) :: e1(3)             !! gradient of phi
@@ -65,8 +70,8 @@ contains
       if (phi > 0.0_wp .and. .not. on_rim(surface, nearest)) phi = -place%distance
    end subroutine level_sets_at
 
-   !> Distance to the surface with the sign of the pseudo-normal (Baerentzen and Aanaes 2005); past the rim only its
-   !> part along the normal of the rim.
+   !> Distance to the surface with the sign of the pseudo-normal (Baerentzen and Aanaes 2005);
+   !> past the rim only its part along the normal of the rim.
    pure function signed_distance(surface, x, nearest) result(psi)
       type(surface_t), intent(in) :: surface
       real(wp), intent(in) :: x(3)
@@ -101,8 +106,9 @@ contains
       end if
    end function on_rim
 
-   !> Normal at a point of a boundary edge, between those of its vertices so that psi is continuous along a smooth rim;
-   !> where a vertex stands at the end of a fold, the normal of the triangle takes its place.
+   !> Normal at a point of a boundary edge, between those of its vertices so that psi is
+   !> continuous along a smooth rim; where a vertex stands at the end of a fold, the normal of the
+   !> triangle takes its place.
    pure function rim_normal(surface, nearest) result(n)
       type(surface_t), intent(in) :: surface
       type(nearest_t), intent(in) :: nearest
@@ -143,8 +149,9 @@ contains
 
    !> Distance ahead of the nearest front point, and its gradient.
    !>
-   !> Beside an edge the part of x - p along e1 of the edge; around a node the distance in the tangent plane, so that
-   !> phi is continuous from edge to edge; at the open end of a chain the last edge goes on straight.
+   !> Beside an edge the part of x - p along e1 of the edge; around a node the distance in the
+   !> tangent plane, so that phi is continuous from edge to edge; at the open end of a chain the
+   !> last edge goes on straight.
    pure subroutine distance_to_front(front, x, place, phi, e1)
       type(front_t), intent(in) :: front
       real(wp), intent(in) :: x(3)

@@ -1,7 +1,9 @@
-!> Triangles of nearly equal size in a planar polygon: a constrained Delaunay triangulation with inner points.
+!> Triangles of nearly equal size in a planar polygon: a constrained Delaunay triangulation with
+!> inner points.
 !!
-!! Ears are cut from the polygon, edges are flipped until each is Delaunay, the points of a hexagonal lattice are
-!! inserted one by one, and the inner points are moved to the middle of their neighbours. Nothing is random.
+!! Ears are cut from the polygon, edges are flipped until each is Delaunay, the points of a
+!! hexagonal lattice are inserted one by one, and the inner points are moved to the middle of
+!! their neighbours. Nothing is random.
 module xmpm_planar_mesh
    use xmpm_kinds, only: wp
    implicit none
@@ -16,17 +18,20 @@ module xmpm_planar_mesh
       integer :: corners = 0                   !! number of points of the polygon
       real(wp), allocatable :: x(:, :)         !! (2, >= points) positions [length]
       integer, allocatable :: tri(:, :)        !! (3, >= triangles) vertices, counter-clockwise
-      integer, allocatable :: beside(:, :)     !! (3, >= triangles) triangle across edge k, 0 on the boundary
+      integer, allocatable :: beside(:, :)   !! (3, >= triangles) triangle across edge k, 0 on the
+                                             !! boundary
    end type planar_mesh_t
 
 contains
 
-   !> Fill a simple polygon, given counter-clockwise in edges of about the wanted length, with triangles.
+   !> Fill a simple polygon, given counter-clockwise in edges of about the wanted length, with
+   !> triangles.
    subroutine mesh_polygon(polygon, element, mesh, ok)
-      real(wp), intent(in) :: polygon(:, :)       !! (2, n) points in counter-clockwise order [length]
+      real(wp), intent(in) :: polygon(:, :)   !! (2, n) points in counter-clockwise order [length]
       real(wp), intent(in) :: element             !! wanted edge of the triangles [length]
-      type(planar_mesh_t), intent(out) :: mesh    !! points (those of the polygon first) and triangles
-      logical, intent(out) :: ok                  !! false where the polygon crosses or touches itself
+      type(planar_mesh_t), intent(out) :: mesh   !! points (those of the polygon first) and
+                                                 !! triangles
+      logical, intent(out) :: ok   !! false where the polygon crosses or touches itself
       integer :: room, sweep
 
       room = size(polygon, 2) + lattice_size(polygon, element)
@@ -110,13 +115,15 @@ contains
       after = modulo(i, n) + 1
    end function after
 
-   !> Area of a corner over the square of its longest edge; 0 or less where the corner is not convex.
+   !> Area of a corner over the square of its longest edge; 0 or less where the corner is not
+   !> convex.
    pure function ear_shape(x, ring, i) result(shape)
       real(wp), intent(in) :: x(:, :)
       integer, intent(in) :: ring(:), i
       real(wp) :: shape, longest
 
-      associate (a => x(:, ring(before(i, size(ring)))), b => x(:, ring(i)), c => x(:, ring(after(i, size(ring)))))
+      associate (a => x(:, ring(before(i, size(ring)))), b => x(:, ring(i)), &
+         c => x(:, ring(after(i, size(ring)))))
          longest = max(sum((b - a)**2), sum((c - b)**2), sum((a - c)**2))
          shape = twice_area(a, b, c)/longest - 1.0e-9_wp
       end associate
@@ -145,7 +152,8 @@ contains
       end associate
    end function blocked
 
-   !> The triangle across each edge, found by comparing all pairs once: the polygon alone has few triangles.
+   !> The triangle across each edge, found by comparing all pairs once: the polygon alone has few
+   !> triangles.
    subroutine find_neighbours(mesh)
       type(planar_mesh_t), intent(inout) :: mesh
       integer :: s, t, j, k
@@ -183,21 +191,23 @@ contains
       end do
    end subroutine flip_all
 
-   !> Whether the point across edge k of triangle t lies within the circle through t, by more than rounding.
+   !> Whether the point across edge k of triangle t lies within the circle through t, by more than
+   !> rounding.
    !>
    !> By the angles opposite to the edge: their sum exceeds pi where sin(alpha + beta) < 0.
    pure function should_flip(mesh, t, k) result(should)
       type(planar_mesh_t), intent(in) :: mesh
       integer, intent(in) :: t, k
       logical :: should
-      integer :: s
+      integer :: s, j
       real(wp) :: p(2), q(2), r(2), w(2), cos_a, cos_b, sin_a, sin_b, scale
 
       should = .false.
       s = mesh%beside(k, t)
       if (s == 0) return
-      associate (c => mesh%x(:, mesh%tri(before(k, 3), t)), d => mesh%x(:, mesh%tri(before(place_of(mesh, s, t), 3), s)), &
-         a => mesh%x(:, mesh%tri(k, t)), b => mesh%x(:, mesh%tri(after(k, 3), t)))
+      j = before(place_of(mesh, s, t), 3)
+      associate (a => mesh%x(:, mesh%tri(k, t)), b => mesh%x(:, mesh%tri(after(k, 3), t)), &
+         c => mesh%x(:, mesh%tri(before(k, 3), t)), d => mesh%x(:, mesh%tri(j, s)))
          p = a - c
          q = b - c
          r = b - d
@@ -222,7 +232,8 @@ contains
       end do
    end function place_of
 
-   !> Turn the edge between two triangles to the other diagonal: (a b c) (b a d) become (c a d) (d b c).
+   !> Turn the edge between two triangles to the other diagonal: (a b c) (b a d) become (c a d) (d
+   !> b c).
    subroutine flip_edge(mesh, t, k)
       type(planar_mesh_t), intent(inout) :: mesh
       integer, intent(in) :: t, k
@@ -268,7 +279,8 @@ contains
       near = 1
       do j = -n(2), n(2)
          do i = -n(1), n(1)
-            p = middle + element*[real(i, wp) + 0.5_wp*real(modulo(j, 2), wp), sqrt(0.75_wp)*real(j, wp)]
+            p = middle + element*[real(i, wp) + 0.5_wp*real(modulo(j, 2), wp), &
+               sqrt(0.75_wp)*real(j, wp)]
             if (.not. well_inside(mesh%x(:, :mesh%corners), p, 0.6_wp*element)) cycle
             call insert_point(mesh, p, near)
          end do
@@ -299,7 +311,8 @@ contains
       end do
    end function well_inside
 
-   !> Split the triangle that holds a point into three and flip what is no longer Delaunay around it.
+   !> Split the triangle that holds a point into three and flip what is no longer Delaunay around
+   !> it.
    subroutine insert_point(mesh, p, near)
       type(planar_mesh_t), intent(inout) :: mesh
       real(wp), intent(in) :: p(2)
@@ -330,7 +343,8 @@ contains
       end do
    end subroutine insert_point
 
-   !> Visit the triangles around the newest point once, flipping the far edge of each where it must be.
+   !> Visit the triangles around the newest point once, flipping the far edge of each where it
+   !> must be.
    subroutine flip_around(mesh, start, flipped)
       type(planar_mesh_t), intent(inout) :: mesh
       integer, intent(in) :: start
@@ -361,7 +375,8 @@ contains
       end do
    end function findloc_in
 
-   !> The triangle that holds a point: a walk from a guess, or a search of all where a hole is in the way.
+   !> The triangle that holds a point: a walk from a guess, or a search of all where a hole is in
+   !> the way.
    pure function holder_of(mesh, p, guess) result(t)
       type(planar_mesh_t), intent(in) :: mesh
       real(wp), intent(in) :: p(2)

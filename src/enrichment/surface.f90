@@ -1,4 +1,5 @@
-!> The crack surface: a triangle mesh of its own, moved by the mean of the displacements of its two faces.
+!> The crack surface: a triangle mesh of its own, moved by the mean of the displacements of its
+!> two faces.
 module xmpm_surface
    use xmpm_kinds, only: wp, i8
    use xmpm_error, only: error_t, raise, code_usage
@@ -12,42 +13,42 @@ module xmpm_surface
 
    !> Mesh, topology and normals of one crack; the normal points from the minus to the plus face.
    !!
-   !! Edge k of a triangle joins its vertices k and k+1. An edge runs as its first triangle runs, so a boundary edge
-   !! has the surface on its left when seen from the plus side.
+   !! Edge k of a triangle joins its vertices k and k+1. An edge runs as its first triangle runs,
+   !! so a boundary edge has the surface on its left when seen from the plus side.
    type :: surface_t
-      integer :: vertex_count = 0                    !! nv
-      integer :: triangle_count = 0                  !! nt
-      integer :: edge_count = 0                      !! ne
-      real(wp) :: rounding = 0.0_wp                  !! distance below which a point is on the surface [length]
-      real(wp), allocatable :: start(:, :)           !! (3, nv) vertices before any motion [length]
-      real(wp), allocatable :: x(:, :)               !! (3, nv) vertices now [length]
-      real(wp), allocatable :: up(:, :)              !! (3, nv) displacement of the plus face [length]
-      real(wp), allocatable :: um(:, :)              !! (3, nv) displacement of the minus face [length]
-      integer, allocatable :: tri(:, :)              !! (3, nt) vertices of the triangles, right-handed about the normal
-      integer, allocatable :: edge(:, :)             !! (2, ne) vertices of the edges
-      integer, allocatable :: edge_triangle(:, :)    !! (2, ne) triangles at an edge, the second 0 on the boundary
-      integer, allocatable :: triangle_edge(:, :)    !! (3, nt) edges of the triangles
-      integer, allocatable :: vertex_offset(:)       !! (nv + 1) vertex v has places offset(v) .. offset(v+1)-1 of
-      integer, allocatable :: vertex_triangle(:)     !! (3 nt) triangles around the vertices
-      integer, allocatable :: boundary(:)            !! (nb) boundary edges, loop after loop, each loop in running order
-      integer, allocatable :: loop_offset(:)         !! (loops + 1) loop l has places offset(l) .. offset(l+1)-1
-      logical, allocatable :: on_boundary(:)         !! (nv) whether a vertex lies on the boundary
-      real(wp), allocatable :: normal(:, :)          !! (3, nt) unit normals of the triangles
-      real(wp), allocatable :: area(:)               !! (nt) areas [length**2]
-      real(wp), allocatable :: edge_normal(:, :)     !! (3, ne) unit pseudo-normals of the edges
-      real(wp), allocatable :: vertex_normal(:, :)   !! (3, nv) unit pseudo-normals of the vertices, weighted by angle
+      integer :: vertex_count = 0                   !! nv
+      integer :: triangle_count = 0                 !! nt
+      integer :: edge_count = 0                     !! ne
+      real(wp) :: rounding = 0.0_wp                 !! a point nearer is on the surface [length]
+      real(wp), allocatable :: start(:, :)          !! (3,nv) vertices before any motion [length]
+      real(wp), allocatable :: x(:, :)              !! (3,nv) vertices now [length]
+      real(wp), allocatable :: up(:, :)             !! (3,nv) motion of the plus face [length]
+      real(wp), allocatable :: um(:, :)             !! (3,nv) motion of the minus face [length]
+      integer, allocatable :: tri(:, :)             !! (3,nt) vertices right-handed about the normal
+      integer, allocatable :: edge(:, :)            !! (2,ne) vertices of the edges
+      integer, allocatable :: edge_triangle(:, :)   !! (2,ne) triangles; the second 0 on the rim
+      integer, allocatable :: triangle_edge(:, :)   !! (3,nt) edges of the triangles
+      integer, allocatable :: vertex_offset(:)      !! (nv+1) first place of each vertex in the next
+      integer, allocatable :: vertex_triangle(:)    !! (3 nt) triangles around vertex after vertex
+      integer, allocatable :: boundary(:)           !! (nb) boundary edges in order, loop after loop
+      integer, allocatable :: loop_offset(:)        !! (loops+1) first place of each loop in it
+      logical, allocatable :: on_boundary(:)        !! (nv) whether a vertex lies on the boundary
+      real(wp), allocatable :: normal(:, :)         !! (3,nt) unit normals of the triangles
+      real(wp), allocatable :: area(:)              !! (nt) areas [length**2]
+      real(wp), allocatable :: edge_normal(:, :)    !! (3,ne) unit pseudo-normals of the edges
+      real(wp), allocatable :: vertex_normal(:, :)  !! (3,nv) the same of the vertices, by angle
    end type surface_t
 
-   real(wp), parameter :: flat = 1.0e-10_wp   !! area over longest edge squared below which a triangle is degenerate
+   real(wp), parameter :: flat = 1.0e-10_wp   !! area over edge squared of a degenerate triangle
 
 contains
 
    !> Build a crack surface from vertices and triangles; it starts without displacement.
    subroutine build_surface(x, tri, surface, error)
-      real(wp), intent(in) :: x(:, :)                     !! (3, nv) vertices [length]
-      integer, intent(in) :: tri(:, :)                    !! (3, nt) vertices of each triangle, from 1
+      real(wp), intent(in) :: x(:, :)                     !! (3,nv) vertices [length]
+      integer, intent(in) :: tri(:, :)                    !! (3,nt) vertices of triangles, from 1
       type(surface_t), intent(out) :: surface             !! the mesh with topology and normals
-      type(error_t), allocatable, intent(out) :: error    !! set where the mesh is no oriented manifold
+      type(error_t), allocatable, intent(out) :: error    !! the mesh is no oriented manifold
 
       call check_triangles(x, tri, error)
       if (allocated(error)) return
@@ -65,13 +66,15 @@ contains
       call follow_boundary(surface, error)
       if (allocated(error)) return
       allocate (surface%normal(3, surface%triangle_count), surface%area(surface%triangle_count))
-      allocate (surface%edge_normal(3, surface%edge_count), surface%vertex_normal(3, surface%vertex_count))
+      allocate (surface%edge_normal(3, surface%edge_count))
+      allocate (surface%vertex_normal(3, surface%vertex_count))
       call refresh_geometry(surface)
    end subroutine build_surface
 
    !> Move the vertices to x0 + (u+ + u-)/2 and renew all normals and areas.
    subroutine refresh_geometry(surface)
-      type(surface_t), intent(inout) :: surface   !! displacements are read, positions and normals are set
+      type(surface_t), intent(inout) :: surface   !! displacements are read, positions and normals
+                                                  !! are set
       real(wp) :: n(3), a(3), b(3)
       integer :: t, e, k, v
 
@@ -87,7 +90,8 @@ contains
                v = c(k)
                a = x(:, c(mod(k, 3) + 1)) - x(:, v)
                b = x(:, c(mod(k + 1, 3) + 1)) - x(:, v)
-               surface%vertex_normal(:, v) = surface%vertex_normal(:, v) + angle_between(a, b)*surface%normal(:, t)
+               surface%vertex_normal(:, v) = surface%vertex_normal(:, v) &
+                  + angle_between(a, b)*surface%normal(:, t)
             end do
          end associate
       end do
@@ -112,8 +116,9 @@ contains
 
    !> Let vertices with no material around take the displacement of their neighbours.
    !>
-   !> Vertices next to material come first, each with the mean of the neighbours that already have a displacement,
-   !> then the next ring, and so on. A part that meets no material at all stays as it is.
+   !> Vertices next to material come first, each with the mean of the neighbours that already have
+   !> a displacement, then the next ring, and so on. A part that meets no material at all stays as
+   !> it is.
    subroutine fill_void(surface, has_material)
       type(surface_t), intent(inout) :: surface   !! `up` and `um` of vertices in a void are set
       logical, intent(in) :: has_material(:)      !! (nv) whether a vertex has its own displacement
@@ -168,7 +173,8 @@ contains
          b = x(:, tri(3, t)) - x(:, tri(1, t))
          longest = max(dot_product(a, a), dot_product(b, b), dot_product(b - a, b - a))
          if (.not. norm2(cross(a, b)) > flat*longest) then
-            call raise(error, code_usage, 'crack surface: triangle '//to_text(t)//' at '//to_text(x(:, tri(1, t)))// &
+            call raise(error, code_usage, 'crack surface: triangle '//to_text(t)//' at '// &
+               to_text(x(:, tri(1, t)))// &
                ' is degenerate (it has no area); its three vertices must not lie on one line')
             return
          end if
@@ -210,7 +216,8 @@ contains
       surface%edge_triangle = owner(:, :known%count)
    end subroutine join_edges
 
-   !> A triangle that meets a known edge must be its second one, another one, and run against the first.
+   !> A triangle that meets a known edge must be its second one, another one, and run against the
+   !> first.
    subroutine check_edge(tri, edge, owner, t, first, error)
       integer, intent(in) :: tri(:, :), edge(2), owner(2), t, first
       type(error_t), allocatable, intent(out) :: error
@@ -218,12 +225,16 @@ contains
 
       pair = 'crack surface: triangles '//to_text(owner(1))//' and '//to_text(t)
       if (sum(tri(:, t)) == sum(tri(:, owner(1)))) then
-         call raise(error, code_usage, pair//' have the same three vertices; each triangle may be there once')
+         call raise(error, code_usage, pair// &
+            ' have the same three vertices; each triangle may be there once')
       else if (owner(2) > 0) then
-         call raise(error, code_usage, 'crack surface: triangle '//to_text(t)//' is the third at the edge of triangles '// &
-            to_text(owner(1))//' and '//to_text(owner(2))//'; an edge joins two at most (write branches as cracks of their own)')
+         call raise(error, code_usage, 'crack surface: triangle '//to_text(t)// &
+            ' is the third at the edge of triangles '// &
+            to_text(owner(1))//' and '//to_text(owner(2))// &
+            '; an edge joins two at most (write branches as cracks of their own)')
       else if (edge(1) == first) then
-         call raise(error, code_usage, pair//' run along their common edge in the same direction; '// &
+         call raise(error, code_usage, pair// &
+            ' run along their common edge in the same direction; '// &
             'all triangles must be oriented alike (turn one of them round)')
       end if
    end subroutine check_edge
@@ -242,14 +253,16 @@ contains
       integer :: t, k, v
       integer, allocatable :: filled(:)
 
-      allocate (surface%vertex_offset(surface%vertex_count + 1), filled(surface%vertex_count), source=0)
+      allocate (surface%vertex_offset(surface%vertex_count + 1), filled(surface%vertex_count), &
+         source=0)
       allocate (surface%vertex_triangle(3*surface%triangle_count))
       do t = 1, surface%triangle_count
          filled(surface%tri(:, t)) = filled(surface%tri(:, t)) + 1
       end do
       if (any(filled == 0)) then
          v = minloc(filled, 1)
-         call raise(error, code_usage, 'crack surface: vertex '//to_text(v)//' at '//to_text(surface%x(:, v))// &
+         call raise(error, code_usage, 'crack surface: vertex '//to_text(v)//' at '// &
+            to_text(surface%x(:, v))// &
             ' belongs to no triangle; leave it out')
          return
       end if
@@ -275,14 +288,17 @@ contains
       integer :: e, v, first, count, loops
 
       allocate (surface%on_boundary(surface%vertex_count), source=.false.)
-      allocate (leaving(surface%vertex_count), boundary(surface%edge_count), offset(surface%edge_count + 1), source=0)
+      allocate (leaving(surface%vertex_count), boundary(surface%edge_count), &
+         offset(surface%edge_count + 1), source=0)
       do e = 1, surface%edge_count
          if (surface%edge_triangle(2, e) > 0) cycle
          v = surface%edge(1, e)
          if (leaving(v) > 0) then
             call raise(error, code_usage, 'crack surface: two parts, with triangles '// &
-               to_text(surface%edge_triangle(1, leaving(v)))//' and '//to_text(surface%edge_triangle(1, e))// &
-               ', touch at vertex '//to_text(v)//' only; join them along an edge or give each its own vertex')
+               to_text(surface%edge_triangle(1, leaving(v)))//' and '// &
+               to_text(surface%edge_triangle(1, e))// &
+               ', touch at vertex '//to_text(v)// &
+               ' only; join them along an edge or give each its own vertex')
             return
          end if
          leaving(v) = e

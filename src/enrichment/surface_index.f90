@@ -6,7 +6,8 @@ module xmpm_surface_index
    implicit none
    private
 
-   public :: surface_index_t, nearest_t, build_index, refresh_index, nearest_on_surface, nearest_in_triangle
+   public :: surface_index_t, nearest_t, build_index, refresh_index, nearest_on_surface, &
+      nearest_in_triangle
    public :: on_face, on_edge, on_vertex
 
    integer, parameter :: on_face = 0     !! the nearest point lies inside a triangle
@@ -16,12 +17,13 @@ module xmpm_surface_index
    !> Tree over the triangles, with their corners side by side.
    type :: surface_index_t
       type(box_tree_t) :: tree                   !! boxes of the triangles
-      real(wp), allocatable :: corner(:, :, :)   !! (3, 3, nt) corners of the triangles in the tree's order [length]
+      real(wp), allocatable :: corner(:, :, :)   !! (3, 3, nt) corners of the triangles in the
+                                                 !! tree's order [length]
    end type surface_index_t
 
    !> The nearest point of a surface.
    type :: nearest_t
-      integer :: triangle = 0           !! the triangle that holds it, 0 where there is none within reach
+      integer :: triangle = 0   !! the triangle that holds it, 0 where there is none within reach
       integer :: feature = on_face      !! on_face, on_edge or on_vertex
       integer :: part = 0               !! number of the triangle, edge or vertex of the surface
       real(wp) :: distance = 0.0_wp     !! from the point asked for [length]
@@ -58,28 +60,24 @@ contains
       real(wp), intent(in) :: x(3)                   !! point [length]
       real(wp), intent(in) :: reach                  !! largest distance of interest [length]
       type(nearest_t), intent(out) :: nearest        !! triangle 0 where nothing is within reach
-      integer, intent(in), optional :: hint          !! a triangle that may be near, 0 for none; saves time only
-      real(wp) :: best, d2, q(3)
-      integer :: region, best_region
+      integer, intent(in), optional :: hint   !! a triangle that may be near, 0 for none; saves time
+                                              !! only
+      real(wp) :: best, q(3)
+      integer :: region
 
       best = reach*reach
-      best_region = 0
       if (present(hint)) then
          if (hint > 0) then
+            ! Only a bound, a little too large: what is found then never depends on the hint.
             call nearest_in_triangle(surface%x(:, surface%tri(:, hint)), x, q, region)
-            d2 = sum((x - q)**2)
-            if (d2 <= best) then
-               best = d2
-               best_region = region
-               nearest%triangle = hint
-               nearest%point = q
-            end if
+            best = min(best, sum((x - q)**2)*(1.0_wp + 1.0e-9_wp) + surface%rounding**2)
          end if
       end if
-      call walk(index, x, best, best_region, nearest%triangle, nearest%point)
+      region = 0
+      call walk(index, x, best, region, nearest%triangle, nearest%point)
       if (nearest%triangle == 0) return
       nearest%distance = sqrt(best)
-      call name_feature(surface, best_region, nearest)
+      call name_feature(surface, region, nearest)
    end subroutine nearest_on_surface
 
    !> Visit the boxes that are nearer than the best triangle so far, the nearer of two first.
@@ -144,12 +142,14 @@ contains
       end do
    end subroutine search_leaf
 
-   !> The nearest point of a triangle, by the regions of its corners, edges and face (Ericson 2005, section 5.1.5).
+   !> The nearest point of a triangle, by the regions of its corners, edges and face (Ericson
+   !> 2005, section 5.1.5).
    pure subroutine nearest_in_triangle(c, x, q, region)
       real(wp), intent(in) :: c(3, 3)    !! corners, one a column [length]
       real(wp), intent(in) :: x(3)       !! point [length]
       real(wp), intent(out) :: q(3)      !! nearest point [length]
-      integer, intent(out) :: region     !! 0 face, 1 to 3 edge from corner k to k + 1, 4 to 6 corner k - 3
+      integer, intent(out) :: region   !! 0 face, 1 to 3 edge from corner k to k + 1, 4 to 6 corner
+                                       !! k - 3
       real(wp) :: ab(3), ac(3), d1, d2, d3, d4, d5, d6, va, vb, vc
 
       ab = c(:, 2) - c(:, 1)

@@ -5,7 +5,8 @@ program test_front
    use xmpm_vectors, only: cross, unit_vector
    use xmpm_surface, only: surface_t, build_surface, refresh_geometry
    use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_rectangle, make_disc, make_sector
-   use xmpm_front, only: front_t, front_place_t, front_test_points, mark_front, refresh_front, nearest_on_front, &
+   use xmpm_front, only: front_t, front_place_t, front_test_points, mark_front, refresh_front, &
+      nearest_on_front, &
       frame_on_front, vertex_phi, fully_cracked
    use testing, only: suite_t, check, check_close, check_no_error, finish
    implicit none
@@ -35,21 +36,26 @@ contains
       real(wp) :: n(3), radial(3), worst(2), phi(500)
       integer :: i
 
-      call set_plane([1.0_wp, 2.0_wp, 3.0_wp], [1.0_wp, 1.0_wp, 0.5_wp], [-1.0_wp, 1.0_wp, 0.0_wp], plane, error)
+      call set_plane([1.0_wp, 2.0_wp, 3.0_wp], [1.0_wp, 1.0_wp, 0.5_wp], [-1.0_wp, 1.0_wp, &
+         0.0_wp], plane, error)
       n = cross(plane%along, plane%across)
       call make_disc(plane, 2.0_wp, 0.2_wp, x, tri, error)
       call build_surface(x, tri, surface, error)
       call front_test_points(surface, 0.5_wp, points)
       ! the points stand 0.15 ahead of the chords; exact to rounding
       call check_close(suite, 'test points stand 0.3 h ahead of the rim', &
-         maxval(abs(norm2(points - spread(plane%centre, 2, size(points, 2)), 1) - 2.0_wp*cos(pi/60.0_wp) - 0.15_wp)), &
+         maxval(abs(norm2(points - spread(plane%centre, 2, size(points, 2)), 1) &
+         - 2.0_wp*cos(pi/60.0_wp) - 0.15_wp)), &
          0.0_wp, 1.0e-14_wp, 0.0_wp)
       allocate (inside(size(points, 2)), source=.true.)
       call mark_front(surface, inside, front)
-      call check(suite, 'a disc has one closed front', front%chain_count == 1 .and. all(front%closed))
+      call check(suite, 'a disc has one closed front', front%chain_count == 1 .and. &
+         all(front%closed))
       ! 60 chords: their length is 2 pi a (1 - (pi/60)**2/6), exactly 120 a sin(pi/60)
-      call check_close(suite, 'its length is that of its chords', front%length(1), 240.0_wp*sin(pi/60.0_wp), 0.0_wp, 1.0e-14_wp)
-      call check_close(suite, 'its length is 2 pi a within a chord', front%length(1), 4.0_wp*pi, 0.0_wp, 5.0e-4_wp)
+      call check_close(suite, 'its length is that of its chords', front%length(1), &
+         240.0_wp*sin(pi/60.0_wp), 0.0_wp, 1.0e-14_wp)
+      call check_close(suite, 'its length is 2 pi a within a chord', front%length(1), 4.0_wp*pi, &
+         0.0_wp, 5.0e-4_wp)
       worst = 0.0_wp
       do i = 1, front%node_count
          radial = unit_vector(front%x(:, i) - plane%centre)
@@ -65,7 +71,8 @@ contains
          all((phi(:surface%vertex_count) < 0.0_wp) .neqv. surface%on_boundary) .and. &
          all(phi(:surface%vertex_count) <= 0.0_wp))
       ! the centre sees the middle of a chord
-      call check_close(suite, 'phi of the centre is minus the radius', phi(1), -2.0_wp*cos(pi/60.0_wp), 1.0e-13_wp, 0.0_wp)
+      call check_close(suite, 'phi of the centre is minus the radius', phi(1), &
+         -2.0_wp*cos(pi/60.0_wp), 1.0e-13_wp, 0.0_wp)
    end subroutine penny
 
    function runs_along_e3() result(does)
@@ -92,7 +99,8 @@ contains
       call front_test_points(surface, 0.1_wp, points)
       inside = points(2, :) > 0.0_wp
       call mark_front(surface, inside, front)
-      call check(suite, 'half a disc at a surface has one open front', front%chain_count == 1 .and. .not. any(front%closed))
+      call check(suite, 'half a disc at a surface has one open front', &
+         front%chain_count == 1 .and. .not. any(front%closed))
       ! 32 chords leave out (pi/32)**2/24 = 0.04 %
       call check_close(suite, 'its length is pi a', front%length(1), pi, 0.0_wp, 5.0e-4_wp)
       call check(suite, 'its s runs along e3', runs_along_e3())
@@ -102,11 +110,13 @@ contains
       do i = 1, front%node_count
          worst = max(worst, norm2(front%e1(:, i) - front%x(:, i)))
       end do
-      ! at the ends the parabola through three nodes: error of third order in the angle pi/32, (pi/32)**2/4 at most
+      ! at the ends the parabola through three nodes: error of third order in the angle pi/32,
+      ! (pi/32)**2/4 at most
       call check_close(suite, 'e1 is radial up to the ends', worst, 0.0_wp, 0.0025_wp, 0.0_wp)
    end subroutine half_penny
 
-   !> The slit of a plate: deeper than the plate, so that only the edges at its ends inside the plate are fronts.
+   !> The slit of a plate: deeper than the plate, so that only the edges at its ends inside the
+   !> plate are fronts.
    subroutine deep_rectangle()
       integer :: i
       logical :: sides
@@ -117,14 +127,17 @@ contains
       call front_test_points(surface, 2.0_wp, points)
       inside = abs(points(1, :)) < 60.0_wp .and. abs(points(2, :)) < 5.5_wp
       call mark_front(surface, inside, front)
-      call check(suite, 'a slit deeper than the plate has two open fronts', front%chain_count == 2 .and. .not. any(front%closed))
+      call check(suite, 'a slit deeper than the plate has two open fronts', &
+         front%chain_count == 2 .and. .not. any(front%closed))
       sides = all(abs(abs(front%x(1, :)) - 20.0_wp) < 1.0e-12_wp)
       do i = 1, front%node_count
-         sides = sides .and. norm2(front%e1(:, i) - [sign(1.0_wp, front%x(1, i)), 0.0_wp, 0.0_wp]) < 1.0e-14_wp
+         sides = sides .and. norm2(front%e1(:, i) - [sign(1.0_wp, front%x(1, i)), 0.0_wp, &
+            0.0_wp]) < 1.0e-14_wp
       end do
       call check(suite, 'the fronts are its ends and look outwards', sides)
       ! six edges of 2 a side
-      call check_close(suite, 'the fronts are as long as the edges inside', sum(front%length), 24.0_wp, 0.0_wp, 1.0e-14_wp)
+      call check_close(suite, 'the fronts are as long as the edges inside', sum(front%length), &
+         24.0_wp, 0.0_wp, 1.0e-14_wp)
       call check(suite, 'their s runs along e3', runs_along_e3())
       call vertex_phi(surface, front, phi(:surface%vertex_count))
       call check(suite, 'phi of its vertices counts from the ends', &
@@ -144,7 +157,8 @@ contains
       call front_test_points(surface, 1.0_wp, points)
       inside = points(1, :) < 99.0_wp
       call mark_front(surface, inside, front)
-      call check(suite, 'a hole in a crack has a front of its own', front%chain_count == 2 .and. all(front%closed))
+      call check(suite, 'a hole in a crack has a front of its own', front%chain_count == 2 .and. &
+         all(front%closed))
       i = front%chain_offset(2)
       call check(suite, 'the front of the hole looks into the hole', &
          norm2(front%x(:, i) + 0.1_wp*front%e1(:, i)) < norm2(front%x(:, i)))
@@ -160,7 +174,8 @@ contains
       call nearest_on_front(front, [0.0_wp, 0.0_wp, 0.0_wp], 9.0_wp, place)
       call vertex_phi(surface, front, phi(:surface%vertex_count))
       call check(suite, 'without a front nothing is near and all vertices are behind it', &
-         front%chain_count == 0 .and. place%edge == 0 .and. all(phi(:surface%vertex_count) <= fully_cracked))
+         front%chain_count == 0 .and. place%edge == 0 .and. &
+         all(phi(:surface%vertex_count) <= fully_cracked))
    end subroutine no_front
 
    !> Nearest front points against the plain search, and the frame there.
@@ -194,8 +209,10 @@ contains
             norm2(cross(frame(:, 1), frame(:, 2)) - frame(:, 3)))
       end do
       ! the same few operations: rounding
-      call check_close(suite, 'the nearest front point is that of the plain search', worst, 0.0_wp, 1.0e-15_wp, 0.0_wp)
-      call check_close(suite, 'frames between the nodes are right-handed and orthonormal', off, 0.0_wp, 2.0e-15_wp, 0.0_wp)
+      call check_close(suite, 'the nearest front point is that of the plain search', worst, &
+         0.0_wp, 1.0e-15_wp, 0.0_wp)
+      call check_close(suite, 'frames between the nodes are right-handed and orthonormal', off, &
+         0.0_wp, 2.0e-15_wp, 0.0_wp)
       call nearest_on_front(front, [3.0_wp, 0.0_wp, 0.0_wp], 0.5_wp, place)
       call check(suite, 'beyond the reach nothing is near', place%edge == 0)
    end subroutine nearest_by_plain_search
@@ -227,6 +244,7 @@ contains
          all(abs(front%edge_e1 - fresh%edge_e1) <= 0.0_wp))
       call nearest_on_front(front, [0.1_wp, 0.3_wp, 0.2_wp], 9.0_wp, place)
       call nearest_on_front(fresh, [0.1_wp, 0.3_wp, 0.2_wp], 9.0_wp, place_there)
-      call check(suite, 'a moved front finds the same nearest point', place%edge == place_there%edge)
+      call check(suite, 'a moved front finds the same nearest point', &
+         place%edge == place_there%edge)
    end subroutine moved
 end program test_front

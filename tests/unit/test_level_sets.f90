@@ -80,8 +80,10 @@ contains
          far(2) = max(far(2), abs(phi(i) - flat), abs(norm2(e1(:, i)) - 1.0_wp))
       end do
       ! coordinates of order one and a dozen operations: a few units of rounding
-      call check_close(suite, 'psi of a plane is exact, beyond its edges too', far(1), 0.0_wp, 1.0e-14_wp, 0.0_wp)
-      call check_close(suite, 'phi of a rectangle is exact, around its corners too', far(2), 0.0_wp, 1.0e-14_wp, 0.0_wp)
+      call check_close(suite, 'psi of a plane is exact, beyond its edges too', far(1), 0.0_wp, &
+         1.0e-14_wp, 0.0_wp)
+      call check_close(suite, 'phi of a rectangle is exact, around its corners too', far(2), &
+         0.0_wp, 1.0e-14_wp, 0.0_wp)
       call check(suite, 'a point beyond the reach says so', any(psi >= beyond_reach) .and. &
          all((psi >= beyond_reach) .eqv. (phi >= beyond_reach)))
    end subroutine plane_rectangle
@@ -95,7 +97,8 @@ contains
       real(wp) :: q(3, n)
       integer :: i
 
-      call set_plane([0.1_wp, 0.7_wp, -0.3_wp], [1.0_wp, 2.0_wp, 0.3_wp], [-2.0_wp, 1.0_wp, 0.0_wp], plane, error)
+      call set_plane([0.1_wp, 0.7_wp, -0.3_wp], [1.0_wp, 2.0_wp, 0.3_wp], [-2.0_wp, 1.0_wp, &
+         0.0_wp], plane, error)
       call make_rectangle(plane, [2.0_wp, 1.0_wp], 0.25_wp, x, tri, error)
       do i = 1, n
          q(:, i) = plane%centre + p(1, i)*0.4_wp*plane%along + p(2, i)*0.4_wp*plane%across
@@ -121,7 +124,8 @@ contains
          worst = max(worst, abs(phi(i) - flat))
       end do
       ! the middle of one of 60 chords lies 1 - cos(pi/60) = 0.00137 inside the circle
-      call check_close(suite, 'phi of a disc is the distance to its circle', worst, 0.0_wp, 0.00138_wp, 0.0_wp)
+      call check_close(suite, 'phi of a disc is the distance to its circle', worst, 0.0_wp, &
+         0.00138_wp, 0.0_wp)
    end subroutine penny
 
    !> Turning and moving crack and points together changes nothing.
@@ -138,15 +142,18 @@ contains
       phi0 = phi
       turn = rotation([0.3_wp, -1.1_wp, 0.7_wp])
       shift = [3.0_wp, -2.0_wp, 5.0_wp]
-      call evaluate(matmul(turn, x) + spread(shift, 2, size(x, 2)), tri, .true., matmul(turn, p) + spread(shift, 2, n))
+      call evaluate(matmul(turn, x) + spread(shift, 2, size(x, 2)), tri, .true., matmul(turn, p) &
+         + spread(shift, 2, n))
       near = psi0 < beyond_reach .and. psi < beyond_reach
       ! coordinates of order ten: rounding of 1e-15 times the operations
       worst = maxval(abs(psi - psi0), near)
-      call check_close(suite, 'psi does not depend on place and direction', worst, 0.0_wp, 1.0e-13_wp, 0.0_wp)
+      call check_close(suite, 'psi does not depend on place and direction', worst, 0.0_wp, &
+         1.0e-13_wp, 0.0_wp)
       near = near .and. phi0 > fully_cracked .and. phi > fully_cracked
       ! the length of a vector behind the front is divided by, so a point near a node gains rounding
       worst = maxval(abs(phi - phi0), near)
-      call check_close(suite, 'phi does not depend on place and direction', worst, 0.0_wp, 1.0e-11_wp, 0.0_wp)
+      call check_close(suite, 'phi does not depend on place and direction', worst, 0.0_wp, &
+         1.0e-11_wp, 0.0_wp)
    end subroutine moved_and_turned
 
    subroutine bent_disc(x, tri, error)
@@ -173,13 +180,16 @@ contains
       call evaluate(x, tri([1, 3, 2], :), .true., p)
       near = psi0 < beyond_reach
       ! the same distances; the nearest point may be computed from another corner of its triangle
-      call check_close(suite, 'turning the surface over turns psi over', maxval(abs(psi + psi0), near), 0.0_wp, &
+      call check_close(suite, 'turning the surface over turns psi over', maxval(abs(psi + psi0), &
+         near), 0.0_wp, &
          1.0e-14_wp, 0.0_wp)
-      call check_close(suite, 'turning the surface over leaves phi', maxval(abs(phi - phi0), near), 0.0_wp, &
+      call check_close(suite, 'turning the surface over leaves phi', maxval(abs(phi - phi0), &
+         near), 0.0_wp, &
          1.0e-11_wp, 0.0_wp)
    end subroutine turned_over
 
-   !> A sheet folded by 100 degrees along x = 0, upwards or downwards: the sign is that of the wedge.
+   !> A sheet folded by 100 degrees along x = 0, upwards or downwards: the sign is that of the
+   !> wedge.
    subroutine folded(upwards)
       logical, intent(in) :: upwards
       real(wp), allocatable :: x(:, :)
@@ -207,7 +217,8 @@ contains
       call check(suite, 'psi has the right sign at a fold and the right size inside it', right)
    end subroutine folded
 
-   !> Only the edges at x = +-1 are fronts: they go on straight, and far from them the crack goes through.
+   !> Only the edges at x = +-1 are fronts: they go on straight, and far from them the crack goes
+   !> through.
    subroutine partial_front()
       real(wp), allocatable :: x(:, :)
       integer, allocatable :: tri(:, :)
@@ -234,13 +245,16 @@ contains
       do i = 1, n
          if (psi(i) >= beyond_reach) cycle
          if (phi(i) <= fully_cracked) then
-            right = right .and. (norm2([abs(p(1, i)) - 1.0_wp, max(abs(p(2, i)) - 0.25_wp, 0.0_wp), p(3, i)]) > 0.6999_wp)
+            right = right .and. (norm2([abs(p(1, i)) - 1.0_wp, max(abs(p(2, i)) - 0.25_wp, &
+               0.0_wp), p(3, i)]) > 0.6999_wp)
          else
             right = right .and. abs(phi(i) - (abs(p(1, i)) - 1.0_wp)) < 1.0e-14_wp
          end if
       end do
-      call check(suite, 'a front goes on straight past its ends; without a front near the crack goes through', right)
-      call check(suite, 'both kinds of points were met', any(phi <= fully_cracked) .and. any(abs(phi) < 1.0_wp))
+      call check(suite, 'a front goes on straight past its ends; without a front near '// &
+         'the crack goes through', right)
+      call check(suite, 'both kinds of points were met', any(phi <= fully_cracked) .and. &
+         any(abs(phi) < 1.0_wp))
    end subroutine partial_front
 
    subroutine no_front()
@@ -272,14 +286,16 @@ contains
       allocate (inside(size(surface%boundary)), source=.true.)
       call mark_front(surface, inside, front)
       do i = 1, n
-         q(:, i) = [-1.3_wp + 2.6_wp*real(i, wp)/real(n, wp), 2.0_wp*halton(i, 2) - 1.0_wp, 0.6_wp*halton(i, 3) - 0.3_wp]
+         q(:, i) = [-1.3_wp + 2.6_wp*real(i, wp)/real(n, wp), 2.0_wp*halton(i, 2) - 1.0_wp, &
+            0.6_wp*halton(i, 3) - 0.3_wp]
       end do
       call cpu_time(from)
       do round = 1, 10
          call evaluate_level_sets(surface, index, front, 0.4_wp, q, psi, phi, e1)
       end do
       call cpu_time(to)
-      print '(a,i0,a,f6.3,a)', 'level sets at a surface of ', surface%triangle_count, ' triangles: ', &
+      print '(a,i0,a,f6.3,a)', 'level sets at a surface of ', surface%triangle_count, &
+         ' triangles: ', &
          (to - from)*1.0e6_wp/real(10*n, wp), ' microseconds a point'
    end subroutine speed
 
