@@ -26,6 +26,7 @@ program test_front
    call no_front()
    call nearest_by_plain_search()
    call moved()
+   call uneven_rim()
    call finish(suite)
 
 contains
@@ -226,6 +227,35 @@ contains
          unit(i, i) = 1.0_wp
       end do
    end function unit_matrix
+
+   !> A disc cut into uneven slices: e1 is radial all the same, and nodes are named as such.
+   subroutine uneven_rim()
+      integer, parameter :: n = 40
+      real(wp) :: rim(3, n + 1), angle, worst
+      integer :: slices(3, n), i
+      type(front_place_t) :: place
+      logical :: named
+
+      do i = 1, n
+         angle = 2.0_wp*pi*(real(i, wp) + 0.4_wp*real(modulo(i, 2), wp))/real(n, wp)
+         rim(:, i) = [cos(angle), sin(angle), 0.0_wp]
+         slices(:, i) = [n + 1, i, modulo(i, n) + 1]
+      end do
+      rim(:, n + 1) = 0.0_wp
+      call build_surface(rim, slices, surface, error)
+      inside = [(.true., i=1, n)]
+      call mark_front(surface, inside, front)
+      worst = 0.0_wp
+      named = .true.
+      do i = 1, front%node_count
+         worst = max(worst, norm2(front%e1(:, i) - front%x(:, i)))
+         call nearest_on_front(front, 1.1_wp*front%x(:, i), 1.0_wp, place)
+         named = named .and. place%node == i
+      end do
+      ! third order in the angle between nodes: (2 pi 1.4/40)**3/8 = 0.0013 at most
+      call check_close(suite, 'e1 is radial on an uneven rim', worst, 0.0_wp, 0.0013_wp, 0.0_wp)
+      call check(suite, 'a node that is the nearest point is named', named)
+   end subroutine uneven_rim
 
    !> A front that moves with its surface is that of a surface made there.
    subroutine moved()

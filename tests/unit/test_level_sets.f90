@@ -6,7 +6,8 @@ program test_level_sets
    use xmpm_surface_index, only: surface_index_t, build_index
    use xmpm_front, only: front_t, mark_front, fully_cracked, beyond_reach
    use xmpm_level_sets, only: evaluate_level_sets
-   use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_rectangle, make_disc
+   use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_rectangle, make_disc, &
+      make_polygon
    use testing, only: suite_t, check, check_close, finish
    implicit none
    type(suite_t) :: suite
@@ -23,7 +24,10 @@ program test_level_sets
    call turned_over()
    call folded(.true.)
    call folded(.false.)
+   call past_a_fold()
+   call past_a_bent_rim()
    call partial_front()
+   call inner_corner()
    call no_front()
    call speed()
    call finish(suite)
@@ -216,6 +220,87 @@ contains
       end do
       call check(suite, 'psi has the right sign at a fold and the right size inside it', right)
    end subroutine folded
+
+   !> Past the rim of a folded sheet psi is that of the plane of the nearest sheet.
+   subroutine past_a_fold()
+      real(wp), allocatable :: x(:, :)
+      integer, allocatable :: tri(:, :)
+      type(error_t), allocatable :: error
+      real(wp), parameter :: slope = 1.0_wp
+      real(wp) :: q(3, n), worst, height
+      integer :: i
+
+      call make_rectangle(crack_plane_t(), [4.0_wp, 1.0_wp], 0.5_wp, x, tri, error)
+      x(3, :) = slope*abs(x(1, :))
+      do i = 1, n
+         height = 0.2_wp*sin(real(i, wp))
+         q(1, i) = merge(0.3_wp, -0.3_wp, modulo(i, 2) == 0)
+         q(2, i) = 0.51_wp + 0.2_wp*halton(i, 3)
+         q(3, i) = slope*abs(q(1, i)) + height
+      end do
+      call evaluate(x, tri, .true., q)
+      worst = maxval(abs(psi - (q(3, :) - slope*abs(q(1, :)))/sqrt(1.0_wp + slope**2)))
+      ! a dozen operations on numbers of order one
+      call check_close(suite, 'past the end of a fold psi is that of the nearer sheet', worst, &
+         0.0_wp, 1.0e-14_wp, 0.0_wp)
+   end subroutine past_a_fold
+
+   !> Around a bent disc, 0.3 outside of its rim, psi has no jumps from edge to edge.
+   subroutine past_a_bent_rim()
+      real(wp), allocatable :: x(:, :)
+      integer, allocatable :: tri(:, :)
+      type(error_t), allocatable :: error
+      real(wp) :: q(3, n), angle
+      integer :: i
+
+      call make_disc(crack_plane_t(), 1.0_wp, 0.2_wp, x, tri, error)
+      x(3, :) = 0.5_wp*x(1, :)*x(2, :)
+      do i = 1, n
+         angle = 2.0_wp*pi*real(i, wp)/real(n, wp)
+         q(:, i) = [1.3_wp*cos(angle), 1.3_wp*sin(angle), 0.2_wp]
+      end do
+      call evaluate(x, tri, .true., q)
+      ! steps of 0.004 in space and a slope of psi of order one
+      call check_close(suite, 'past a bent rim psi is continuous', &
+         maxval(abs(psi(2:) - psi(:n - 1))), &
+         0.0_wp, 0.008_wp, 0.0_wp)
+   end subroutine past_a_bent_rim
+
+   !> An L of which one edge at the inner corner is a front: the rest of the L stays behind it.
+   subroutine inner_corner()
+      real(wp), allocatable :: x(:, :)
+      integer, allocatable :: tri(:, :)
+      type(error_t), allocatable :: error
+      type(surface_t) :: surface
+      type(surface_index_t) :: index
+      type(front_t) :: front
+      logical, allocatable :: inside(:)
+      real(wp), parameter :: corners(3, 6) = reshape([0.0_wp, 0.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, &
+         0.0_wp, &
+         2.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 1.0_wp, 2.0_wp, 0.0_wp, 0.0_wp, 2.0_wp, &
+         0.0_wp], [3, 6])
+      real(wp), parameter :: points(3, 2) = reshape([0.9_wp, 1.1_wp, 0.05_wp, 0.9_wp, 0.9_wp, &
+         -0.05_wp], [3, 2])
+      integer :: i, e
+
+      call make_polygon(corners, 0.25_wp, x, tri, error)
+      call build_surface(x, tri, surface, error)
+      call build_index(surface, index)
+      allocate (inside(size(surface%boundary)))
+      do i = 1, size(inside)
+         e = surface%boundary(i)
+         inside(i) = all(abs(x(2, surface%edge(:, e)) - 1.0_wp) < 1.0e-9_wp)
+      end do
+      call mark_front(surface, inside, front)
+      call evaluate_level_sets(surface, index, front, 1.0_wp, points, psi(:2), phi(:2), e1(:, :2))
+      ! both points are 0.1 from the corner along x, y and 0.05 off the surface
+      call check_close(suite, 'a point of the surface beside an open end stays behind the front', &
+         phi(1), &
+         -0.15_wp, 1.0e-14_wp, 0.0_wp)
+      call check_close(suite, 'a point behind an open end counts from the line of the front', &
+         phi(2), &
+         -0.1_wp, 1.0e-14_wp, 0.0_wp)
+   end subroutine inner_corner
 
    !> Only the edges at x = +-1 are fronts: they go on straight, and far from them the crack goes
    !> through.
