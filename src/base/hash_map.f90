@@ -65,13 +65,17 @@ contains
       type(hash_map_t), intent(inout) :: map
       integer(i8), allocatable :: keys(:)
       integer, allocatable :: values(:)
-      integer :: i
+      integer :: i, place
 
       call move_alloc(map%keys, keys)
       call move_alloc(map%values, values)
       call clear_map(map, size(keys))
       do i = 0, size(keys) - 1
-         if (keys(i) /= empty) call set_value(map, keys(i), values(i))
+         if (keys(i) == empty) cycle
+         place = place_of(map, keys(i))
+         map%keys(place) = keys(i)
+         map%values(place) = values(i)
+         map%count = map%count + 1
       end do
    end subroutine grow
 
