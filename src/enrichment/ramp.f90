@@ -7,41 +7,30 @@ module xmpm_ramp
    implicit none
    private
 
-   public :: jump_weight, jump_slope, sharp_jump
+   public :: jump_weight, sharp_jump
 
 contains
 
-   !> Graded H = sign(psi) clamp((ramp_end h - phi)/(ramp h), 0, 1).
-   elemental function jump_weight(psi, phi, ramp, ramp_end, h) result(weight)
-      real(wp), intent(in) :: psi        !! signed distance to the surface [length]
-      real(wp), intent(in) :: phi        !! signed distance to the front [length]
-      real(wp), intent(in) :: ramp       !! length of the ramp [cells]
-      real(wp), intent(in) :: ramp_end   !! phi where H has become 0 [cells]
-      real(wp), intent(in) :: h          !! cell size [length]
-      real(wp) :: weight                 !! H, -1 to 1
-
-      if (phi >= ramp_end*h) then
-         weight = 0.0_wp
-      else if (phi <= (ramp_end - ramp)*h) then
-         weight = sharp_jump(psi)
-      else
-         weight = sharp_jump(psi)*(ramp_end*h - phi)/(ramp*h)
-      end if
-   end function jump_weight
-
-   !> Derivative of the graded H by phi; the gradient of H is this times e1.
-   elemental function jump_slope(psi, phi, ramp, ramp_end, h) result(slope)
-      real(wp), intent(in) :: psi        !! signed distance to the surface [length]
-      real(wp), intent(in) :: phi        !! signed distance to the front [length]
-      real(wp), intent(in) :: ramp       !! length of the ramp [cells]
-      real(wp), intent(in) :: ramp_end   !! phi where H has become 0 [cells]
-      real(wp), intent(in) :: h          !! cell size [length]
-      real(wp) :: slope                  !! dH/dphi [1/length]
+   !> Graded H = sign(psi) clamp((ramp_end - phi)/ramp, 0, 1) and its gradient.
+   pure subroutine jump_weight(psi, phi, e1, ramp, ramp_end, weight, slope)
+      real(wp), intent(in) :: psi         !! signed distance to the surface, or a side (1 or -1)
+      real(wp), intent(in) :: phi         !! signed distance to the front [length]
+      real(wp), intent(in) :: e1(3)       !! gradient of phi
+      real(wp), intent(in) :: ramp        !! length of the ramp [length]
+      real(wp), intent(in) :: ramp_end    !! phi where H has become 0 [length]
+      real(wp), intent(out) :: weight     !! H, -1 to 1
+      real(wp), intent(out) :: slope(3)   !! gradient of H, 0 outside the ramp [1/length]
 
       slope = 0.0_wp
-      if (phi >= ramp_end*h .or. phi <= (ramp_end - ramp)*h) return
-      slope = -sharp_jump(psi)/(ramp*h)
-   end function jump_slope
+      weight = sharp_jump(psi)
+      if (phi <= ramp_end - ramp) return
+      if (phi >= ramp_end) then
+         weight = 0.0_wp
+      else
+         slope = -weight/ramp*e1
+         weight = weight*(ramp_end - phi)/ramp
+      end if
+   end subroutine jump_weight
 
    !> Sharp H: 1 on the plus side, -1 on the minus side and on the surface itself (eq. 18 of the
    !> paper).
