@@ -319,7 +319,6 @@ contains
       if (any(crack%material) .and. .not. all(crack%material)) then
          call fill_void(crack%surface, crack%material)
       end if
-      crack%surface%x = crack%surface%start + 0.5_wp*(crack%surface%up + crack%surface%um)
       call refresh_geometry(crack%surface)
       call refresh_index(crack%surface, crack%index)
       call refresh_front(crack%surface, crack%front)
