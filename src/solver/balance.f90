@@ -79,16 +79,17 @@ contains
       type(model_t), intent(in) :: m
       real(wp), intent(out) :: linear(3)    !! [momentum]
       real(wp), intent(out) :: angular(3)   !! about the origin [angular momentum]
-      real(wp) :: sums(6), p(3)
+      real(wp) :: sums(6), x(3), p(3)
       integer :: c, i
 
       sums = 0
       associate (q => m%particles%q)
          do c = 1, m%particles%n_chunks
             do i = 1, m%particles%count(c)
+               x = q(i, c_x:c_x + 2, c)
                p = q(i, c_m, c)*q(i, c_v:c_v + 2, c)
                sums(1:3) = sums(1:3) + p
-               sums(4:6) = sums(4:6) + cross(q(i, c_x:c_x + 2, c), p)
+               sums(4:6) = sums(4:6) + cross(x, p)
             end do
          end do
       end associate

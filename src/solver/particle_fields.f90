@@ -112,6 +112,7 @@ contains
    pure subroutine fill_energy(m, values)
       type(model_t), intent(in) :: m
       real(wp), allocatable, intent(out) :: values(:, :)
+      real(wp) :: stress(6)
       integer :: c, i, k
 
       allocate (values(1, count_particles(m%particles)))
@@ -121,7 +122,8 @@ contains
          associate (law => m%bodies%laws(m%bodies%law_of(m%particles%body(c)))%law)
             do i = 1, m%particles%count(c)
                k = k + 1
-               values(1, k) = law%strain_energy(m%particles%q(i, c_s:c_s + 5, c))
+               stress = m%particles%q(i, c_s:c_s + 5, c)
+               values(1, k) = law%strain_energy(stress)
             end do
          end associate
       end do

@@ -85,8 +85,8 @@ contains
       do c = 1, m%particles%n_chunks
          do i = 1, m%particles%count(c)
             ! eight particles are equally near to this corner of cells
-            if (all(abs(m%particles%x0(i, :, c) - [6.0_wp, 2.0_wp, 2.0_wp]) < 0.3_wp)) &
-               lowest = min(lowest, m%particles%id(i, c))
+            if (any(abs(m%particles%x0(i, :, c) - [6.0_wp, 2.0_wp, 2.0_wp]) > 0.3_wp)) cycle
+            lowest = min(lowest, m%particles%id(i, c))
          end do
       end do
       call min_all(comm, lowest)
