@@ -312,8 +312,8 @@ contains
       call wait_for_all(comm)
       call read_table(suite, 'table_energy', 'time,step,dt,kinetic,strain,external,damping,'// &
          'plastic,contact,fracture,balance_error,relative_error,momentum_x,momentum_y,'// &
-         'momentum_z,angular_x,angular_y,angular_z', '# units: ms,1,ms'//repeat(',g mm2/ms2', 8)//',1'// &
-         repeat(',g mm/ms', 3)//repeat(',g mm2/ms', 3), row)
+         'momentum_z,angular_x,angular_y,angular_z', '# units: ms,1,ms'// &
+         repeat(',g mm2/ms2', 8)//',1'//repeat(',g mm/ms', 3)//repeat(',g mm2/ms', 3), row)
       ! 17 digits give every real back
       call check(suite, 'the row is the balance', all(abs(row - [0.5_wp, 7.0_wp, 0.1_wp, 1.0_wp, &
          2.0_wp, 3.0_wp, 4.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 5.0_wp, 6.0_wp, 7.0_wp, 8.0_wp, 9.0_wp, &
