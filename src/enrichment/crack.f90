@@ -182,7 +182,7 @@ contains
             if (crack%rule == rule_graded) then
                call jump_weight(side, phi, e1, crack%ramp*h, crack%ramp_end*h, jump, slope)
             end if
-            near(i, at + near_crack) = number
+            near(i, at + near_crack) = real(number, wp)
             near(i, at + near_side) = side
             near(i, at + near_psi) = sign(psi, side)
             near(i, at + near_phi) = phi

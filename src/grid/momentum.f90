@@ -5,7 +5,7 @@ module xmpm_momentum
    implicit none
    private
 
-   public :: advance_momentum, blend_change, velocity_from_second, nodal_work_t, change_from_velocity
+   public :: force_out_of_balance, advance_momentum, blend_change, velocity_from_second, nodal_work_t, change_from_velocity
 
    !> Work that nodes did or took in a step, counted once over all ranks [energy].
    type :: nodal_work_t
@@ -44,6 +44,18 @@ contains
          work%damping = work%damping + m*dt*rate*dot_product(v, mean)
       end do
    end subroutine advance_momentum
+
+   !> Sum of |m change| over the rows that this rank counts [momentum]; fields 5:7 hold the change.
+   pure function force_out_of_balance(grid) result(total)
+      type(grid_t), intent(in) :: grid
+      real(wp) :: total
+      integer :: i
+
+      total = 0
+      do i = 1, grid%n_rows
+         if (grid%mine(i)) total = total + grid%node(1, i)*norm2(grid%node(5:7, i))
+      end do
+   end function force_out_of_balance
 
    !> Change that gives the particles the share `eta` of the nodal velocity: fields 5:7 become
    !> (1 - eta) change + eta target, where the target is v for PIC and 2 v - S+ S v for XPIC(2) in

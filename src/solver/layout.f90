@@ -111,7 +111,7 @@ contains
       keys = kept_keys(m)
       do i = 1, size(wanted)
          first = minval(all(2::2), mask=all(1::2) == wanted(i))
-         if (first == m%comm%rank) keys = [keys, wanted(i)]
+         if (first == int(m%comm%rank, i8)) keys = [keys, wanted(i)]
       end do
       call lay_out(m, keys)
       call insert_own(m%particles, m%grid, m%comm%rank, m%outbox)

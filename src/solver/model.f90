@@ -89,7 +89,8 @@ module xmpm_model
       integer, allocatable :: movers(:)       !! chunks that particles left
       integer :: n_movers = 0                 !! number of them
       integer(i8) :: moved = 0                !! particles that changed bin since the last sort
-      logical :: relaxing = .false.           !! before the start: damped, loads of t = 0
+      logical :: relaxing = .false.           !! before the start, the force out of balance is wanted
+      real(wp) :: force = 0                   !! sum of |m a| of the nodes while relaxing, this rank
    end type model_t
 
    abstract interface

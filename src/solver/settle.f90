@@ -43,7 +43,7 @@ contains
       m%dt_before = m%dt
       call start_stage(m%clock, stage_sort)
       near_moved = .false.
-      m%moved = m%moved + m%n_movers
+      m%moved = m%moved + int(m%n_movers, i8)
       call rebin(m%particles, m%grid, m%movers(:m%n_movers), m%outbox, near_moved)
       call stop_stage(m%clock, stage_sort)
       worst = [m%tally%speed2, -m%tally%volume, real(count_particles(m%particles), wp), &
@@ -91,8 +91,12 @@ contains
          end do
          if (len(where_is) > 0) exit
       end do
-      call raise(error, code_numerics, 'step '//to_text(m%step)//', time '//to_text(m%time)// &
+      if (len(where_is) > 0 .or. m%comm%size == 1) call raise(error, code_numerics, &
+         'step '//to_text(m%step)//', time '//to_text(m%time)// &
          ': a particle has a volume that is not positive, or a value that is not a number'//where_is)
+      call agree_on_error(m%comm, error)
+      if (.not. allocated(error)) call raise(error, code_numerics, 'step '//to_text(m%step)// &
+         ': the energies are not numbers')
    end subroutine check_health
 
    pure function lost_message(m, lost) result(text)
@@ -137,9 +141,8 @@ contains
       if (stale .or. m%split_again .or. mod(m%step, crack_interval) == 0) then
          drifted = .false.
          do i = 1, size(m%cracks)
-            if (stale .or. mod(m%step, crack_interval) == 0 .or. .not. allocated(m%sided%bin)) then
-               call gather_crack(m%cracks(i), m%comm, m%grid)
-            end if
+            if (.not. (stale .or. mod(m%step, crack_interval) == 0)) cycle
+            call gather_crack(m%cracks(i), m%comm, m%grid)
             drifted = drifted .or. has_drifted(m%cracks(i), m%grid%lattice%size)
          end do
          if (drifted) call renew_level_sets(m, error)

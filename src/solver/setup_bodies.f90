@@ -338,7 +338,7 @@ contains
       do i = 1, size(volume)
          if (any(block_of(bin_of(m%grid%lattice, x(:, i))) /= place)) cycle
          n = n + 1
-         record = new_record(id + n, number, x(:, i), plan%density*volume(i), volume(i))
+         record = new_record(id + int(n, i8), number, x(:, i), plan%density*volume(i), volume(i))
          call start_motion(plan, record)
          call insert_record(m%particles, m%grid, record)
       end do

@@ -5,7 +5,8 @@ module xmpm_stages
    use xmpm_stage_clock, only: start_stage, stop_stage, stage_p2g, stage_grid, stage_g2p, &
       stage_stress, stage_halo, stage_crack
    use xmpm_grid, only: clear_rows
-   use xmpm_momentum, only: advance_momentum, blend_change, velocity_from_second, change_from_velocity
+   use xmpm_momentum, only: force_out_of_balance, advance_momentum, &
+      blend_change, velocity_from_second, change_from_velocity
    use xmpm_boundary, only: apply_boundary, hold_boundary, region_set
    use xmpm_transfer, only: tally_t, particles_to_grid, update_velocity, smooth_velocity, &
       update_stress, advance_positions
@@ -70,6 +71,7 @@ contains
       do i = 1, size(m%loads)
          call work_of_load(m%loads(i), m%particles, m%kernels, m%sided, m%time, dt, m%grid)
       end do
+      if (m%relaxing) m%force = force_out_of_balance(m%grid)/dt
       eta = pic_share(m)
       if (eta > 0) then
          if (m%options%xpic) call smooth(m)
