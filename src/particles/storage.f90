@@ -186,9 +186,10 @@ contains
       type(blocks_t), intent(in) :: blocks
       integer, intent(in) :: lane, chunk
       integer, intent(in) :: bin   !! 64 (block - 1) + bin of the block
-      integer :: c
+      integer :: c, body
 
-      c = chunk_with_room(p, lattice, blocks, bin, p%body(chunk))
+      body = p%body(chunk)   ! a copy, since storage may grow
+      c = chunk_with_room(p, lattice, blocks, bin, body)
       p%count(c) = p%count(c) + 1
       if (p%attached(chunk) > 0 .and. p%attached(c) == 0) call attach(p, c)
       call copy_lane(p, lane, chunk, p%count(c), c)
