@@ -72,7 +72,7 @@ contains
       call add_key(t, key_t(name='poisson', range='(-1, 0.5)', required=.true., &
          meaning='Poisson''s ratio'))
       call add_key(t, key_t(name='toughness', dimension='toughness', range=positive, &
-         meaning='fracture toughness K_Ic'))
+         meaning='fracture toughness K_Ic; not used yet, for cracks do not grow'))
 
       call add_keyword(t, keyword_t(name='body', naming=must_have_name, required=.true., &
          repeatable=.true., &
@@ -263,7 +263,7 @@ contains
       call add_key(t, key_t(name='rate', dimension='rate', range=positive, &
          meaning='of viscous relaxation'))
       call add_key(t, key_t(name='residual', range='(0, 1)', default='1e-4', &
-         meaning='force out of balance, over the applied force, at which the bodies are at rest'))
+         meaning='force out of balance, over the largest it had, at which the bodies are at rest'))
       call add_key(t, key_t(name='limit', dimension='time', range=positive, required=.true., &
          meaning='longest time to relax; not to reach the residual by then is a failure'))
 
