@@ -5,7 +5,7 @@
 module xmpm_transfer
    use xmpm_kinds, only: wp
    use xmpm_law, only: law_t
-   use xmpm_lattice, only: tile_base, stencil_offsets, bin_corner, bins_per_block
+   use xmpm_lattice, only: tile_base, stencil_offsets, bin_corner, bins_per_block, block_width
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, lanes, c_v, c_m, c_vol, c_x
    use xmpm_frame, only: frame_t
@@ -49,6 +49,7 @@ contains
       integer, intent(in) :: first, last      !! blocks to work on
       type(grid_t), intent(inout) :: grid     !! fields 1:7 are added to
       real(wp) :: tile(8, tile_nodes)
+      real(wp) :: corners(3, bins_per_block)
       type(frame_t) :: frame
       integer :: base(bins_per_block), offsets(grid%lattice%reach**3), b, k, c, i, n
 
@@ -56,11 +57,14 @@ contains
       offsets = stencil_offsets(grid%lattice)
       n = size(grid%blocks%tile, 1)
       do b = first, last
+         call start_block(grid, b, frame, corners)
          tile(:, :n) = 0
          do k = 1, bins_per_block
             c = p%head(k, b)
             if (c == 0) cycle
-            frame = frame_of(grid, bodies, p, c, base(k))
+            frame%corner = corners(:, k)
+            frame%base = base(k)
+            frame%half = bodies%half(p%body(c))
             if (sided%n > 0) then
                if (sided%bin(k, b) > 0) then
                   call scatter_sided(p, c, kernels, sided, sided%bin(k, b), offsets, frame, grid)
@@ -79,23 +83,24 @@ contains
       end do
    end subroutine particles_to_grid
 
-   !> Frame of the bin of a chunk.
-   pure function frame_of(grid, bodies, p, c, base) result(frame)
+   !> What all bins of a walk have in common, and the lower corners of a block's bins.
+   pure subroutine start_block(grid, b, frame, corners)
       type(grid_t), intent(in) :: grid
-      type(bodies_t), intent(in) :: bodies
-      type(particles_t), intent(in) :: p
-      integer, intent(in) :: c, base
-      type(frame_t) :: frame
+      integer, intent(in) :: b                                !! block
+      type(frame_t), intent(inout) :: frame                   !! scale is set
+      real(wp), intent(out) :: corners(3, bins_per_block)     !! [length]
+      real(wp) :: corner(3), h
       integer :: k
 
-      k = mod(p%bin(c) - 1, bins_per_block)
-      frame%corner = bin_corner(grid%lattice, &
-         4*grid%blocks%place(:, 1 + (p%bin(c) - 1)/bins_per_block) &
-         + [iand(k, 3), iand(shifta(k, 2), 3), shifta(k, 4)])
-      frame%per_size = 1/grid%lattice%size
-      frame%half = bodies%half(p%body(c))
-      frame%base = base
-   end function frame_of
+      h = grid%lattice%size
+      frame%per_size = 1/h
+      corner = bin_corner(grid%lattice, block_width*grid%blocks%place(:, b))
+      do k = 0, bins_per_block - 1
+         corners(1, k + 1) = corner(1) + h*real(iand(k, 3), wp)
+         corners(2, k + 1) = corner(2) + h*real(iand(shifta(k, 2), 3), wp)
+         corners(3, k + 1) = corner(3) + h*real(shifta(k, 4), wp)
+      end do
+   end subroutine start_block
 
    !> Particle velocities from the rows' change, and MUSL's second map (eq. 43).
    !>
@@ -112,6 +117,7 @@ contains
       type(grid_t), intent(inout) :: grid
       type(tally_t), intent(inout) :: tally
       real(wp) :: tile(8, tile_nodes), second(4, tile_nodes), value(lanes, 3)
+      real(wp) :: corners(3, bins_per_block)
       type(frame_t) :: frame
       integer :: base(bins_per_block), offsets(grid%lattice%reach**3), b, k, c, n, i
 
@@ -119,12 +125,15 @@ contains
       offsets = stencil_offsets(grid%lattice)
       n = size(grid%blocks%tile, 1)
       do b = first, last
+         call start_block(grid, b, frame, corners)
          call load_tile(grid, b, tile)
          second(:, :n) = 0
          do k = 1, bins_per_block
             c = p%head(k, b)
             if (c == 0) cycle
-            frame = frame_of(grid, bodies, p, c, base(k))
+            frame%corner = corners(:, k)
+            frame%base = base(k)
+            frame%half = bodies%half(p%body(c))
             if (sided%n > 0) then
                if (sided%bin(k, b) > 0) then
                   call velocity_sided(p, c, kernels, sided, sided%bin(k, b), offsets, frame, keep, &
@@ -221,18 +230,22 @@ contains
       integer, intent(in) :: first, last      !! blocks to work on
       type(grid_t), intent(inout) :: grid
       real(wp) :: tile(8, tile_nodes), second(4, tile_nodes), value(lanes, 3)
+      real(wp) :: corners(3, bins_per_block)
       type(frame_t) :: frame
       integer :: base(bins_per_block), offsets(grid%lattice%reach**3), b, k, c, i
 
       base = tile_base(grid%lattice)
       offsets = stencil_offsets(grid%lattice)
       do b = first, last
+         call start_block(grid, b, frame, corners)
          call load_tile(grid, b, tile)
          second = 0
          do k = 1, bins_per_block
             c = p%head(k, b)
             if (c == 0) cycle
-            frame = frame_of(grid, bodies, p, c, base(k))
+            frame%corner = corners(:, k)
+            frame%base = base(k)
+            frame%half = bodies%half(p%body(c))
             if (sided%n > 0) then
                if (sided%bin(k, b) > 0) then
                   call mean_sided(p, c, kernels, sided, sided%bin(k, b), offsets, frame, grid)
@@ -270,6 +283,7 @@ contains
       integer, intent(inout) :: movers(:)            !! chunks that particles left
       integer, intent(inout) :: n_movers             !! number of them
       real(wp) :: tile(8, tile_nodes), gradient(lanes, 9), value(lanes, 3), work(lanes)
+      real(wp) :: corners(3, bins_per_block)
       type(frame_t) :: frame
       integer :: base(bins_per_block), offsets(grid%lattice%reach**3), b, k, c, s
       logical :: left
@@ -278,11 +292,14 @@ contains
       offsets = stencil_offsets(grid%lattice)
       work = 0
       do b = 1, grid%blocks%n
+         call start_block(grid, b, frame, corners)
          call load_tile(grid, b, tile)
          do k = 1, bins_per_block
             c = p%head(k, b)
             if (c == 0) cycle
-            frame = frame_of(grid, bodies, p, c, base(k))
+            frame%corner = corners(:, k)
+            frame%base = base(k)
+            frame%half = bodies%half(p%body(c))
             s = 0
             if (sided%n > 0) s = sided%bin(k, b)
             do while (c > 0)
@@ -344,6 +361,7 @@ contains
       integer, intent(inout) :: movers(:)            !! chunks that particles left
       integer, intent(inout) :: n_movers             !! number of them
       real(wp) :: tile(8, tile_nodes), gradient(lanes, 9), value(lanes, 3)
+      real(wp) :: corners(3, bins_per_block)
       type(frame_t) :: frame
       integer :: base(bins_per_block), offsets(grid%lattice%reach**3), b, k, c, s
       logical :: left
@@ -351,11 +369,14 @@ contains
       base = tile_base(grid%lattice)
       offsets = stencil_offsets(grid%lattice)
       do b = 1, grid%blocks%n
+         call start_block(grid, b, frame, corners)
          call load_tile(grid, b, tile)
          do k = 1, bins_per_block
             c = p%head(k, b)
             if (c == 0) cycle
-            frame = frame_of(grid, bodies, p, c, base(k))
+            frame%corner = corners(:, k)
+            frame%base = base(k)
+            frame%half = bodies%half(p%body(c))
             s = 0
             if (sided%n > 0) s = sided%bin(k, b)
             do while (c > 0)

@@ -52,9 +52,11 @@ contains
       end associate
    end subroutine note_energies
 
-   !> The balance of the start of the last step, over all ranks. Collective.
-   subroutine take_balance(m, balance)
+   !> The balance of the start of the last step, over all ranks; momenta cost a pass over the
+   !> particles. Collective.
+   subroutine take_balance(m, with_momenta, balance)
       type(model_t), intent(inout) :: m
+      logical, intent(in) :: with_momenta   !! whether they are wanted
       type(balance_t), intent(out) :: balance
       real(wp) :: sums(4)
 
@@ -73,6 +75,6 @@ contains
          balance%relative_error = 0
          if (l%largest > 0) balance%relative_error = balance%error/l%largest
       end associate
-      call momenta(m, balance%linear, balance%angular)
+      if (with_momenta) call momenta(m, balance%linear, balance%angular)
    end subroutine take_balance
 end module xmpm_ledger

@@ -91,7 +91,7 @@ contains
       call start_stage(m%clock, stage_output)
       slack = 1e-9_wp*m%options%end_time
       if (last .or. m%time >= agenda%history - slack) then
-         call take_balance(m, agenda%balance)
+         call take_balance(m, .true., agenda%balance)
          call write_energy(results, m, agenda%balance)
          call write_probes(results, m)
          agenda%history = next_due(m%time, results%history_every, slack)
@@ -119,7 +119,7 @@ contains
 
       if (allocated(error)) return
       if (mod(m%step, watch_interval) /= 0) return
-      call take_balance(m, agenda%balance)
+      call take_balance(m, .false., agenda%balance)
       if (.not. m%options%energy_limit > 0) return
       if (abs(agenda%balance%relative_error) <= m%options%energy_limit) return
       call raise(error, code_numerics, 'step '//to_text(m%step)//', time '//to_text(m%time)// &
