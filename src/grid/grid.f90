@@ -9,7 +9,7 @@ module xmpm_grid
    implicit none
    private
 
-   public :: grid_t, make_grid, size_rows, clear_rows, parent_of, node_position
+   public :: grid_t, make_grid, size_rows, clear_rows, active_rows, parent_of, node_position
    public :: f_mass, f_velocity, f_change, row_fields
 
    integer, parameter :: row_fields = 8   !! values of a row
@@ -26,6 +26,8 @@ module xmpm_grid
       integer, allocatable :: parent(:)        !! (n_plain+1:) ordinary row of a split node's row
       real(wp), allocatable :: node(:, :)      !! (8,rows) mass, momentum or velocity, force or change
       real(wp), allocatable :: second(:, :)    !! (3,rows) momentum of MUSL's second map
+      logical, allocatable :: active(:)        !! (node blocks) whether a row holds anything
+      logical, allocatable :: always(:)        !! (node blocks) rows are shared: active in any case
       logical, allocatable :: mine(:)          !! (rows) whether this rank counts the row in sums
    end type grid_t
 
@@ -49,6 +51,8 @@ contains
       grid%n_plain = nodes_per_block*grid%blocks%n_node_blocks
       n = grid%n_plain + extra
       grid%n_rows = n
+      if (allocated(grid%active)) deallocate (grid%active)
+      allocate (grid%active(grid%blocks%n_node_blocks), source=.true.)
       if (allocated(grid%node)) then
          if (size(grid%node, 2) >= n .and. size(grid%node, 2) <= 2*n + 4096) return
          deallocate (grid%node, grid%second)
@@ -57,16 +61,36 @@ contains
       allocate (grid%second(3, n + n/16), source=0.0_wp)
    end subroutine size_rows
 
-   !> Set all rows to zero.
+   !> Set all rows to zero; only those that hold anything are touched.
    subroutine clear_rows(grid)
       type(grid_t), intent(inout) :: grid
-      integer :: i
+      integer :: b, i, first, last
 
-      do i = 1, grid%n_rows
-         grid%node(:, i) = 0
-         grid%second(:, i) = 0
+      do b = 1, grid%blocks%n_node_blocks + 1
+         call active_rows(grid, b, first, last)
+         do i = first, last
+            grid%node(:, i) = 0
+            grid%second(:, i) = 0
+         end do
       end do
+      grid%active = grid%always
    end subroutine clear_rows
+
+   !> Rows of an active node block; last < first for one that holds nothing. The block behind the
+   !> last one stands for the rows of split nodes.
+   pure subroutine active_rows(grid, b, first, last)
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: b
+      integer, intent(out) :: first, last
+
+      first = nodes_per_block*(b - 1) + 1
+      if (b > grid%blocks%n_node_blocks) then
+         last = grid%n_rows
+      else
+         last = first - 1
+         if (grid%active(b)) last = nodes_per_block*b
+      end if
+   end subroutine active_rows
 
    !> Ordinary row of the node that a row belongs to.
    pure function parent_of(grid, row) result(parent)

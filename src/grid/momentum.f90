@@ -1,7 +1,7 @@
 !> The nodal part of a step: forces to velocities, damping, gravity, and the second map's velocity.
 module xmpm_momentum
    use xmpm_kinds, only: wp
-   use xmpm_grid, only: grid_t
+   use xmpm_grid, only: grid_t, active_rows
    implicit none
    private
 
@@ -26,22 +26,25 @@ contains
       real(wp), intent(in) :: rate         !! of nodal damping [1/time]
       type(nodal_work_t), intent(inout) :: work
       real(wp) :: m, v(3), change(3), mean(3)
-      integer :: i
+      integer :: b, i, first, last
 
-      do i = 1, grid%n_rows
-         m = grid%node(1, i)
-         if (.not. m > 0) then
-            grid%node(2:7, i) = 0
-            cycle
-         end if
-         v = grid%node(2:4, i)/m
-         change = dt*(grid%node(5:7, i)/m + gravity - rate*v)
-         grid%node(2:4, i) = v + change
-         grid%node(5:7, i) = change
-         if (.not. grid%mine(i)) cycle
-         mean = v + 0.5_wp*change
-         work%external = work%external + m*dt*dot_product(gravity, mean)
-         work%damping = work%damping + m*dt*rate*dot_product(v, mean)
+      do b = 1, grid%blocks%n_node_blocks + 1
+         call active_rows(grid, b, first, last)
+         do i = first, last
+            m = grid%node(1, i)
+            if (.not. m > 0) then
+               grid%node(2:7, i) = 0
+               cycle
+            end if
+            v = grid%node(2:4, i)/m
+            change = dt*(grid%node(5:7, i)/m + gravity - rate*v)
+            grid%node(2:4, i) = v + change
+            grid%node(5:7, i) = change
+            if (.not. grid%mine(i)) cycle
+            mean = v + 0.5_wp*change
+            work%external = work%external + m*dt*dot_product(gravity, mean)
+            work%damping = work%damping + m*dt*rate*dot_product(v, mean)
+         end do
       end do
    end subroutine advance_momentum
 
@@ -49,11 +52,14 @@ contains
    pure function force_out_of_balance(grid) result(total)
       type(grid_t), intent(in) :: grid
       real(wp) :: total
-      integer :: i
+      integer :: b, i, first, last
 
       total = 0
-      do i = 1, grid%n_rows
-         if (grid%mine(i)) total = total + grid%node(1, i)*norm2(grid%node(5:7, i))
+      do b = 1, grid%blocks%n_node_blocks + 1
+         call active_rows(grid, b, first, last)
+         do i = first, last
+            if (grid%mine(i)) total = total + grid%node(1, i)*norm2(grid%node(5:7, i))
+         end do
       end do
    end function force_out_of_balance
 
@@ -65,28 +71,34 @@ contains
       real(wp), intent(in) :: eta    !! share of the nodal velocity, 0 to 1
       logical, intent(in) :: xpic    !! whether the target is that of XPIC(2)
       real(wp) :: target(3)
-      integer :: i
+      integer :: b, i, first, last
 
-      do i = 1, grid%n_rows
-         if (.not. grid%node(1, i) > 0) cycle
-         target = grid%node(2:4, i)
-         if (xpic) target = 2*target - grid%second(:, i)/grid%node(1, i)
-         grid%node(5:7, i) = (1 - eta)*grid%node(5:7, i) + eta*target
-         grid%second(:, i) = 0
+      do b = 1, grid%blocks%n_node_blocks + 1
+         call active_rows(grid, b, first, last)
+         do i = first, last
+            if (.not. grid%node(1, i) > 0) cycle
+            target = grid%node(2:4, i)
+            if (xpic) target = 2*target - grid%second(:, i)/grid%node(1, i)
+            grid%node(5:7, i) = (1 - eta)*grid%node(5:7, i) + eta*target
+            grid%second(:, i) = 0
+         end do
       end do
    end subroutine blend_change
 
    !> Velocity of MUSL's second map in fields 5:7.
    subroutine velocity_from_second(grid)
       type(grid_t), intent(inout) :: grid
-      integer :: i
+      integer :: b, i, first, last
 
-      do i = 1, grid%n_rows
-         if (grid%node(1, i) > 0) then
-            grid%node(5:7, i) = grid%second(:, i)/grid%node(1, i)
-         else
-            grid%node(5:7, i) = 0
-         end if
+      do b = 1, grid%blocks%n_node_blocks + 1
+         call active_rows(grid, b, first, last)
+         do i = first, last
+            if (grid%node(1, i) > 0) then
+               grid%node(5:7, i) = grid%second(:, i)/grid%node(1, i)
+            else
+               grid%node(5:7, i) = 0
+            end if
+         end do
       end do
    end subroutine velocity_from_second
 
@@ -94,13 +106,16 @@ contains
    subroutine change_from_velocity(grid, divide)
       type(grid_t), intent(inout) :: grid
       logical, intent(in) :: divide   !! whether 2:4 hold momentum
-      integer :: i
+      integer :: b, i, first, last
 
-      do i = 1, grid%n_rows
-         grid%node(5:7, i) = grid%node(2:4, i)
-         if (divide .and. grid%node(1, i) > 0) then
-            grid%node(5:7, i) = grid%node(2:4, i)/grid%node(1, i)
-         end if
+      do b = 1, grid%blocks%n_node_blocks + 1
+         call active_rows(grid, b, first, last)
+         do i = first, last
+            grid%node(5:7, i) = grid%node(2:4, i)
+            if (divide .and. grid%node(1, i) > 0) then
+               grid%node(5:7, i) = grid%node(2:4, i)/grid%node(1, i)
+            end if
+         end do
       end do
    end subroutine change_from_velocity
 end module xmpm_momentum

@@ -150,6 +150,9 @@ contains
 
       if (allocated(grid%mine)) deallocate (grid%mine)
       allocate (grid%mine(grid%n_rows), source=.true.)
+      if (allocated(grid%always)) deallocate (grid%always)
+      allocate (grid%always(grid%blocks%n_node_blocks), source=.false.)
+      grid%always(1 + (sharing%rows - 1)/nodes_per_block) = .true.
       do k = 1, size(sharing%ranks)
          if (sharing%ranks(k) > rank) cycle
          do i = sharing%first(k), sharing%first(k + 1) - 1

@@ -1,6 +1,7 @@
 !> Transfers of the chunks of one bin that touches split nodes, one set of rows after the other.
 module xmpm_sided_transfer
    use xmpm_kinds, only: wp
+   use xmpm_blocks, only: nodes_per_block
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, lanes, c_m, c_vol, c_s
    use xmpm_frame, only: frame_t
@@ -76,6 +77,7 @@ contains
       do i = 1, size(offsets)
          grid%node(:, rows(i)) = grid%node(:, rows(i)) + tile(:, 1 + offsets(i))
          grid%node(5:7, rows(i)) = grid%node(5:7, rows(i)) + push(:3, 1 + offsets(i))
+         if (rows(i) <= grid%n_plain) grid%active(1 + (rows(i) - 1)/nodes_per_block) = .true.
       end do
    end subroutine add_rows
 

@@ -6,6 +6,7 @@ module xmpm_transfer
    use xmpm_kinds, only: wp
    use xmpm_law, only: law_t
    use xmpm_lattice, only: tile_base, stencil_offsets, bin_corner, bins_per_block, block_width
+   use xmpm_blocks, only: nodes_per_block
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, lanes, c_v, c_m, c_vol, c_x
    use xmpm_frame, only: frame_t
@@ -51,7 +52,7 @@ contains
       real(wp) :: tile(8, tile_nodes)
       real(wp) :: corners(3, bins_per_block)
       type(frame_t) :: frame
-      integer :: base(bins_per_block), offsets(grid%lattice%reach**3), b, k, c, i, n
+      integer :: base(bins_per_block), offsets(grid%lattice%reach**3), b, k, c, i, n, row
 
       base = tile_base(grid%lattice)
       offsets = stencil_offsets(grid%lattice)
@@ -78,7 +79,10 @@ contains
             end do
          end do
          do i = 1, n
-            grid%node(:, grid%blocks%tile(i, b)) = grid%node(:, grid%blocks%tile(i, b)) + tile(:, i)
+            row = grid%blocks%tile(i, b)
+            if (.not. any(abs(tile(:, i)) > 0)) cycle
+            grid%node(:, row) = grid%node(:, row) + tile(:, i)
+            grid%active(1 + (row - 1)/nodes_per_block) = .true.
          end do
       end do
    end subroutine particles_to_grid
