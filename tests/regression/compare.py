@@ -1,0 +1,164 @@
+"""Compares the result files of runs with each other or with values of known source.
+
+compare.py same FIRST SECOND                     two runs are identical bit for bit
+compare.py agree FIRST SECOND [TOLERANCE]        two runs agree over the largest of each field
+compare.py check RUN < TABLE                     values; a line is NAME | VALUE | EXPECTED |
+                                                 TOLERANCE | SOURCE, see `names_of`
+
+A run is FOLDER/NAME, NAME being the deck's job. Every row is printed; exit 1 if one fails.
+"""
+
+import math
+import re
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+ENERGIES = "kinetic strain external damping plastic contact fracture balance_error".split()
+SINGLE = 2.5e-7  # two roundings to single precision, over the largest value
+
+
+def read_table(path: Path) -> dict[str, np.ndarray]:
+    """Columns of a CSV file; 17 digits give back every bit."""
+    lines = [line for line in path.read_text().splitlines() if line and line[0] != "#"]
+    rows = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
+    names = lines[0].split(",")
+    return {name: rows[:, i] for i, name in enumerate(names)}
+
+
+def step_files(run: str) -> list[Path]:
+    """Step files of the particles of a run, in order."""
+    path = Path(run)
+    return sorted((path.parent / f"{path.name}_particles").glob("*.vtkhdf"))
+
+
+def read_particles(path: Path) -> dict[str, np.ndarray]:
+    """Points and fields of a step file, by the particles' ids."""
+    with h5py.File(path) as file:
+        group = file["VTKHDF"]
+        fields = {name: data[()] for name, data in group["PointData"].items()}
+        fields["x"] = group["Points"][()]
+    order = np.argsort(fields["id"], kind="stable") if "id" in fields else slice(None)
+    return {name: data[order] for name, data in fields.items()}
+
+
+def field_of(column: str) -> str:
+    """Name of the field that a column belongs to: energies are one, components of a vector too."""
+    if column in ENERGIES:
+        return "energy"
+    return re.sub(r"_([xyz]|xx|yy|zz|xy|yz|xz)$", "", column)
+
+
+def table_differences(first: dict, second: dict) -> dict[str, float]:
+    """Largest difference of each field over its largest magnitude."""
+    assert list(first) == list(second), "the tables have other columns"
+    fields: dict[str, list[str]] = {}
+    for name in first:
+        fields.setdefault(field_of(name), []).append(name)
+    result = {}
+    for field, names in fields.items():
+        a = np.stack([first[n] for n in names])
+        b = np.stack([second[n] for n in names])
+        assert a.shape == b.shape, "the tables have other lengths"
+        scale = 1.0 if field == "relative_error" else np.abs(a).max()
+        result[field] = relative(a, b, scale)
+    return result
+
+
+def relative(a: np.ndarray, b: np.ndarray, scale: float) -> float:
+    """Largest difference over a scale."""
+    largest = float(np.abs(a - b).max())
+    return largest / float(scale) if largest > 0 else largest
+
+
+def particle_differences(first: str, second: str) -> dict[str, float]:
+    """Largest differences of the last step: of the path since the start, and of the fields."""
+    a, b = read_particles(step_files(first)[-1]), read_particles(step_files(second)[-1])
+    start = read_particles(step_files(first)[0])["x"]
+    result = {"path": relative(a["x"] - start, b["x"] - start, np.abs(a["x"] - start).max())}
+    for name in sorted(set(a) - {"x", "rank"}):
+        one, two = a[name].astype(float), b[name].astype(float)
+        result[name] = relative(one, two, np.abs(one).max())
+    return result
+
+
+def show(name: str, value: float, expected: float, tolerance: float, source: str) -> bool:
+    """Print a row; tells whether it holds."""
+    good = math.isfinite(value) and abs(value - expected) <= tolerance
+    print(
+        f"{'ok    ' if good else 'FAILED'} {name:34} {value: .9e}  expected {expected: .9e}"
+        f"  tolerance {tolerance:.1e}  ({source})"
+    )
+    return good
+
+
+def tables_of(run: str) -> list[str]:
+    """CSV files of a run."""
+    path = Path(run)
+    return sorted(p.name for p in path.parent.glob(f"{path.name}_*.csv"))
+
+
+def agree(first: str, second: str, tolerance: float, single: float, source: str) -> bool:
+    """Show how far two runs agree, field by field."""
+    assert tables_of(first) == tables_of(second), "the runs have other tables"
+    good = True
+    for name in tables_of(first):
+        one, two = (read_table(Path(run).parent / name) for run in (first, second))
+        for field, value in table_differences(one, two).items():
+            good &= show(f"{name[:-4]}: {field}", value, 0, tolerance, source)
+    for field, value in particle_differences(first, second).items():
+        limit = tolerance if field == "path" else single
+        good &= show(f"particles: {field}", value, 0, limit, source)
+    return good
+
+
+def names_of(run: str) -> dict:
+    """What values in a table of checks can be made of.
+
+    `energy` and `probe` are dictionaries of columns; `start` and `last` those of the particles'
+    first and last step; `np`, and Python's `abs`, `max`, `min`, `sum`.
+    """
+    path = Path(run)
+    names = {"np": np, "abs": abs, "max": max, "min": min, "sum": sum}
+    for kind in ("energy", "probe"):
+        table = path.parent / f"{path.name}_{kind}.csv"
+        if table.exists():
+            names[kind] = read_table(table)
+    if step_files(run):
+        names["start"] = read_particles(step_files(run)[0])
+        names["last"] = read_particles(step_files(run)[-1])
+    return names
+
+
+def check(run: str, rows: str) -> bool:
+    """Show and judge the values of a table of checks."""
+    names = names_of(run)
+    good, count = True, 0
+    for row in rows.splitlines():
+        if not row.strip():
+            continue
+        name, value, expected, tolerance, source = (cell.strip() for cell in row.split("|"))
+        numbers = (float(eval(text, {}, names)) for text in (value, expected, tolerance))
+        good &= show(name, *numbers, source)
+        count += 1
+    assert count > 0, "nothing to check"
+    return good
+
+
+def main(words: list[str]) -> int:
+    """Run a command; 0 where all rows hold."""
+    command, rest = words[0], words[1:]
+    if command == "same":
+        good = agree(rest[0], rest[1], 0.0, 0.0, "the same ranks: bit for bit")
+    elif command == "agree":
+        tolerance = float(rest[2]) if len(rest) > 2 else 1e-10
+        good = agree(rest[0], rest[1], tolerance, SINGLE, "the same run on other ranks")
+    else:
+        good = check(rest[0], sys.stdin.read())
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
