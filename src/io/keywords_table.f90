@@ -262,8 +262,8 @@ contains
          meaning='kinetic: stop all motion at each peak of kinetic energy'))
       call add_key(t, key_t(name='rate', dimension='rate', range=positive, &
          meaning='of viscous relaxation'))
-      call add_key(t, key_t(name='residual', range='(0, 1)', default='1e-4', &
-         meaning='force out of balance, over the largest it had, at which the bodies are at rest'))
+      call add_key(t, key_t(name='residual', range='(0, 1)', default='1e-3', &
+         meaning='force out of balance at rest, over the largest so far with the reactions'))
       call add_key(t, key_t(name='limit', dimension='time', range=positive, required=.true., &
          meaning='longest time to relax; not to reach the residual by then is a failure'))
 

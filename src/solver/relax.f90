@@ -1,6 +1,6 @@
 !> Bringing the bodies to rest under the loads of t = 0, before the dynamics begin.
 module xmpm_relax
-   use xmpm_kinds, only: wp, i8
+   use xmpm_kinds, only: wp
    use xmpm_text, only: to_text, lower
    use xmpm_error, only: error_t, raise, code_numerics
    use xmpm_communicator, only: sum_all
@@ -19,14 +19,15 @@ contains
    !> Step with damping until the forces are in balance, then stop all motion and set the clock to 0.
    !>
    !> Kinetic damping stops all motion at each peak of kinetic energy; viscous damping takes the rate
-   !> of the deck. The residual is the sum over the nodes of |m a| over the largest that it had. Loads stay those of t = 0. Collective.
+   !> of the deck. The residual is the sum over the nodes of |m a| over the
+   !> largest that it had with the reactions. Loads stay those of t = 0. Collective.
    subroutine relax(m, deck, log, error)
       type(model_t), intent(inout) :: m
       type(deck_t), intent(in) :: deck
       type(log_t), intent(inout) :: log
       type(error_t), allocatable, intent(out) :: error
       type(block_t) :: block
-      real(wp) :: kinetic(2), limit, spent, residual, first, viscous, wanted
+      real(wp) :: kinetic(2), limit, spent, residual, largest, viscous, wanted
       logical :: by_peaks
       integer :: peaks
 
@@ -40,7 +41,7 @@ contains
       m%relaxing = .true.
       spent = 0
       kinetic = 0
-      first = 0
+      largest = 0
       peaks = 0
       residual = 1
       do
@@ -54,7 +55,7 @@ contains
             kinetic = 0
             peaks = peaks + 1
          end if
-         if (mod(m%step, 10_i8) == 0) call measure(m, first, residual)
+         call measure(m, largest, residual)
          if (residual < wanted) exit
          if (spent < limit) cycle
          call raise(error, code_numerics, 'the bodies did not come to rest within the limit of '// &
@@ -86,18 +87,22 @@ contains
       m%time = 0
    end subroutine one_step
 
-   !> Force out of balance of the last step over the largest so far. Collective.
-   subroutine measure(m, first, residual)
+   !> Force out of balance over the largest force so far, reactions included. Collective.
+   subroutine measure(m, largest, residual)
       type(model_t), intent(inout) :: m
-      real(wp), intent(inout) :: first      !! the largest so far [force]
+      real(wp), intent(inout) :: largest    !! force out of balance and reactions, the most so far
       real(wp), intent(out) :: residual
       real(wp) :: force
+      real(wp), allocatable :: reactions(:)
+      integer :: i
 
+      reactions = [(m%boundaries(i)%reaction, i=1, size(m%boundaries))]
+      call sum_all(m%comm, reactions)
       force = m%force
       call sum_all(m%comm, force)
-      first = max(first, force)
+      largest = max(largest, force + sum(abs(reactions)))
       residual = 0
-      if (first > 0) residual = force/first
+      if (largest > 0) residual = force/largest
    end subroutine measure
 
    !> Set all velocities to zero.
