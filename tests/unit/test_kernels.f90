@@ -294,8 +294,8 @@ contains
       if (.not. (error <= worst .or. ieee_is_nan(worst))) worst = error
    end subroutine keep_worst
 
-   !> Every error against rounding: places are known to about 10 eps of |x|/h <= 50 cells, values are
-   !> of order one and sums have at most 8 x 27 terms. A wrong weight is off by 1e-3 and more.
+   !> Every error against rounding: places are known to about 10 eps of |x|/h <= 50 cells, values
+   !> are of order one and sums have at most 8 x 27 terms. A wrong weight is off by 1e-3 and more.
    subroutine report(kind, worst)
       character(len=*), intent(in) :: kind
       real(wp), intent(in) :: worst(n_worst)

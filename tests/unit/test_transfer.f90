@@ -141,8 +141,8 @@ contains
       call map_to_particles(m, remap=.true.)
       call momenta(m, p, l)
       call hold(head//'G2P keeps the linear momentum', p - p0, size_p)
-      if (comm%rank == 0) print '(3a,es9.2,a)', '   ', head, 'one G2P of random velocities changes ' &
-         //'the angular momentum by', norm2(l - l0)/size_l, ' of sum |x| |m v|'
+      if (comm%rank == 0) print '(3a,es9.2,a)', '   ', head, 'one G2P of random velocities ' &
+         //'changes the angular momentum by', norm2(l - l0)/size_l, ' of sum |x| |m v|'
       call nodal_sums(m, m%grid%node(5:7, :), .true., mass, p, l)
       call hold(head//'the second map keeps the linear momentum', p - p0, size_p)
       call check_close(suite, head//'the mass stays', mass, m0, 0.0_wp, 0.0_wp)
@@ -197,8 +197,8 @@ contains
       volume = worst(2)
    end subroutine strain
 
-   !> Stress of E eps |v|/h dt with |v| < 30 at the nodes: 100 2e-16 30 0.1 = 6e-14, some times over;
-   !> a strain rate of even 1e-9 w would give 1e-8.
+   !> Stress of E eps |v|/h dt with |v| < 30 at the nodes: 100 2e-16 30 0.1 = 6e-14, some times
+   !> over; a strain rate of even 1e-9 w would give 1e-8.
    subroutine test_rotation(shape)
       character(len=*), intent(in) :: shape
       type(model_t) :: m
@@ -208,8 +208,8 @@ contains
       call strain(m, [1.0_wp, -2.0_wp, 0.7_wp], [0.3_wp, 0.2_wp, 0.1_wp], 0.1_wp, stress, volume)
       call check_close(suite, shape//': a rotation at the nodes strains nothing', stress, 0.0_wp, &
          1e-12_wp, 0.0_wp)
-      call check_close(suite, shape//': a rotation at the nodes keeps the volumes', volume, 0.0_wp, &
-         1e-14_wp, 0.0_wp)
+      call check_close(suite, shape//': a rotation at the nodes keeps the volumes', volume, &
+         0.0_wp, 1e-14_wp, 0.0_wp)
    end subroutine test_rotation
 
    subroutine test_translation(shape)
@@ -219,8 +219,8 @@ contains
 
       call make_block(shape, '*TIME end=1|', .false., m)
       call strain(m, [0.0_wp, 0.0_wp, 0.0_wp], [3.0_wp, 2.0_wp, -1.0_wp], 0.1_wp, stress, volume)
-      call check_close(suite, shape//': a translation at the nodes strains nothing', stress, 0.0_wp, &
-         1e-13_wp, 0.0_wp)
+      call check_close(suite, shape//': a translation at the nodes strains nothing', stress, &
+         0.0_wp, 1e-13_wp, 0.0_wp)
    end subroutine test_translation
 
    !> A free cube spins: linear momentum stays to rounding, the angular momentum drifts, since
@@ -231,8 +231,8 @@ contains
 
       call spin_cube(shape, '1', 100, coarse)
       call spin_cube(shape, '0.5', 200, fine)
-      if (comm%rank == 0) print '(2a,2es10.2)', '   ', shape//': angular momentum is off after 0.24 rad,' &
-         //' 4 and 8 cells across, by', coarse, fine
+      if (comm%rank == 0) print '(2a,2es10.2)', '   ', shape//': angular momentum is off after ' &
+         //'0.24 rad, 4 and 8 cells across, by', coarse, fine
       ! The arms of surface nodes are wrong by a part of h, so the drift is of first order: half as
       ! much on half the cells, with room for terms of second order.
       call check(suite, shape//': the drift of the angular momentum falls with the cell size: ' &
@@ -251,7 +251,8 @@ contains
       integer :: step
 
       call make_model(comm, units//'*GRID shape='//shape//' size='//h//'|*TIME end=1000|' &
-         //'*MATERIAL alloy density=2 young=100 poisson=0.25|*BODY b material=alloy box=0 0 0 4 4 4 particles=2 ' &
+         //'*MATERIAL alloy density=2 young=100 poisson=0.25|' &
+         //'*BODY b material=alloy box=0 0 0 4 4 4 particles=2 ' &
          //'spin=0.01 0.02 0.03 spin_centre=2 2 2|', deck, m, error)
       call check_no_error(suite, shape//': a spinning cube is set up', error)
       if (allocated(error)) return
