@@ -13,7 +13,7 @@ module xmpm_loads
    implicit none
    private
 
-   public :: load_t, apply_load, work_of_load, rows_of_bin
+   public :: load_t, apply_load, work_of_load, rows_of_bin, push_chunk
 
    real(wp), parameter :: point = 1e-6_wp   !! width that makes GIMP a point at the face [cells]
 
@@ -38,8 +38,8 @@ contains
       type(sided_t), intent(in) :: sided
       real(wp), intent(in) :: time            !! [time]
       type(grid_t), intent(inout) :: grid
-      real(wp) :: force(lanes, 3), q(lanes, 14), push(4, tile_nodes), factor
-      integer :: c, s, i, rows(grid%lattice%reach**3), offsets(grid%lattice%reach**3)
+      real(wp) :: force(lanes, 3), q(lanes, 14), factor
+      integer :: c, s, offsets(grid%lattice%reach**3)
       type(frame_t) :: frame
 
       factor = curve_value(load%curve, time)
@@ -52,16 +52,53 @@ contains
          s = sided_bin(sided, p%bin(c))
          if (s > 0) then
             call push_load(p, c, kernels, sided, s, offsets, frame, force, grid)
-            cycle
+         else
+            call push_plain(p, c, kernels, q, offsets, frame, force, grid)
          end if
-         push(:, 1 + offsets) = 0
-         call kernels%push(p%count(c), q, force, frame, push)
-         rows = rows_of_bin(grid, p%bin(c), offsets)
-         do i = 1, size(rows)
-            grid%node(5:7, rows(i)) = grid%node(5:7, rows(i)) + push(:3, 1 + offsets(i))
-         end do
       end do
    end subroutine apply_load
+
+   !> Add a force of each lane of a chunk to fields 5:7 of the rows, at the particles themselves.
+   subroutine push_chunk(p, c, half, kernels, sided, force, grid)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: c                !! chunk
+      real(wp), intent(in) :: half            !! half a particle's width [cells]
+      type(kernels_t), intent(in) :: kernels
+      type(sided_t), intent(in) :: sided
+      real(wp), intent(in) :: force(lanes, 3)
+      type(grid_t), intent(inout) :: grid
+      integer :: s, offsets(grid%lattice%reach**3)
+      type(frame_t) :: frame
+
+      offsets = stencil_offsets(grid%lattice)
+      frame = face_frame(p, grid, c)
+      frame%half = half
+      s = sided_bin(sided, p%bin(c))
+      if (s > 0) then
+         call push_load(p, c, kernels, sided, s, offsets, frame, force, grid)
+      else
+         call push_plain(p, c, kernels, p%q(:, :, c), offsets, frame, force, grid)
+      end if
+   end subroutine push_chunk
+
+   !> Add forces of a chunk of an ordinary bin, with the lanes where `q` has them.
+   subroutine push_plain(p, c, kernels, q, offsets, frame, force, grid)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: c, offsets(:)
+      type(kernels_t), intent(in) :: kernels
+      real(wp), intent(in) :: q(lanes, 14), force(lanes, 3)
+      type(frame_t), intent(in) :: frame
+      type(grid_t), intent(inout) :: grid
+      real(wp) :: push(4, tile_nodes)
+      integer :: i, rows(size(offsets))
+
+      push(:, 1 + offsets) = 0
+      call kernels%push(p%count(c), q, force, frame, push)
+      rows = rows_of_bin(grid, p%bin(c), offsets)
+      do i = 1, size(rows)
+         grid%node(5:7, rows(i)) = grid%node(5:7, rows(i)) + push(:3, 1 + offsets(i))
+      end do
+   end subroutine push_plain
 
    !> Add forces of a chunk of a sided bin: grid%second serves as the place to add to.
    subroutine push_load(p, c, kernels, sided, s, offsets, frame, force, grid)

@@ -19,7 +19,7 @@ module xmpm_model
    implicit none
    private
 
-   public :: model_t, gravity_t, options_t, ledger_t, step_i
+   public :: model_t, gravity_t, options_t, ledger_t, step_i, force_i
 
    !> A body force with its course in time.
    type :: gravity_t
@@ -76,6 +76,7 @@ module xmpm_model
       type(ledger_t) :: ledger
       type(stage_clock_t) :: clock
       procedure(step_i), pointer, nopass :: take_step => null()   !! the chosen scheme
+      procedure(force_i), pointer, nopass :: further_force => null()   !! on particles, from a caller
       integer(i8) :: step = 0                 !! steps taken
       real(wp) :: time = 0                    !! [time]
       real(wp) :: dt = 0                      !! of the present step [time]
@@ -100,5 +101,13 @@ module xmpm_model
          type(model_t), intent(inout) :: m
          real(wp), intent(in) :: dt   !! [time]
       end subroutine step_i
+
+      !> Body force of the particles of one chunk at a time, beyond what the deck knows.
+      pure subroutine force_i(time, x0, force)
+         import :: wp
+         real(wp), intent(in) :: time          !! [time]
+         real(wp), intent(in) :: x0(8, 3)      !! first positions [length]
+         real(wp), intent(out) :: force(8, 3)  !! on a mass [length/time^2]
+      end subroutine force_i
    end interface
 end module xmpm_model

@@ -10,7 +10,8 @@ module xmpm_stages
    use xmpm_boundary, only: apply_boundary, hold_boundary, region_set
    use xmpm_transfer, only: tally_t, particles_to_grid, update_velocity, smooth_velocity, &
       update_stress, advance_positions
-   use xmpm_loads, only: apply_load, work_of_load, rows_of_bin
+   use xmpm_storage, only: lanes, c_m
+   use xmpm_loads, only: apply_load, work_of_load, rows_of_bin, push_chunk
    use xmpm_lattice, only: stencil_offsets
    use xmpm_curves, only: curve_value
    use xmpm_crack, only: advance_crack
@@ -35,6 +36,7 @@ contains
       do i = 1, size(m%loads)
          call apply_load(m%loads(i), m%particles, m%kernels, m%sided, m%time, m%grid)
       end do
+      if (associated(m%further_force)) call add_further_force(m)
       call particles_to_grid(m%particles, m%bodies, m%kernels, m%sided, 1, m%grid%blocks%n_edge, &
          m%grid)
       call start_sum(m%halo, m%comm, m%grid%node, 1, 7)
@@ -45,6 +47,23 @@ contains
       call finish_sum(m%halo, m%grid%node, 1, 7)
       call stop_stage(m%clock, stage_halo)
    end subroutine map_to_grid
+
+   !> Body force that the caller of the library gives; its work is not in the ledger.
+   subroutine add_further_force(m)
+      type(model_t), intent(inout) :: m
+      real(wp) :: force(lanes, 3)
+      integer :: c, i
+
+      do c = 1, m%particles%n_chunks
+         if (m%particles%count(c) == 0) cycle
+         call m%further_force(m%time, m%particles%x0(:, :, c), force)
+         do i = 1, 3
+            force(:, i) = force(:, i)*m%particles%q(:, c_m, c)
+         end do
+         call push_chunk(m%particles, c, m%bodies%half(m%particles%body(c)), m%kernels, m%sided, &
+            force, m%grid)
+      end do
+   end subroutine add_further_force
 
    !> Nodal velocities after the step (eq. 4, 29) with damping and conditions; the energies that
    !> nodes see; and the share of PIC or XPIC in what particles will get.
