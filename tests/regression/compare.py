@@ -2,6 +2,8 @@
 
 compare.py same FIRST SECOND                     two runs are identical bit for bit
 compare.py agree FIRST SECOND [TOLERANCE]        two runs agree over the largest of each field
+compare.py mirror FIRST SECOND AXIS TOLERANCE    the second is the mirror image of the first, x -> -x
+                                                 for axis x
 compare.py check RUN < TABLE                     values; a line is NAME | VALUE | EXPECTED |
                                                  TOLERANCE | SOURCE, see `names_of`
 
@@ -84,6 +86,44 @@ def particle_differences(first: str, second: str) -> dict[str, float]:
     return result
 
 
+def mirror_image(fields: dict[str, np.ndarray], axis: int) -> dict[str, np.ndarray]:
+    """Particle fields seen in a mirror; tensors are xx yy zz xy yz xz."""
+    signs = np.where(np.arange(3) == axis, -1, 1)
+    shears = np.array([signs[0] * signs[1], signs[1] * signs[2], signs[0] * signs[2]])
+    result = dict(fields)
+    for name in {"x", "displacement", "velocity"} & set(fields):
+        result[name] = fields[name] * signs
+    if "stress" in fields:
+        result["stress"] = fields["stress"] * np.concatenate([np.ones(3), shears])
+    return result
+
+
+def mirror(first: str, second: str, axis: int, tolerance: float) -> bool:
+    """Show how far the second run is the mirror image of the first."""
+    runs = []
+    for run in (first, second):
+        steps = [read_particles(step_files(run)[i]) for i in (0, -1)]
+        if run == second:
+            steps = [mirror_image(step, axis) for step in steps]
+        order = np.lexsort(np.round(steps[0]["x"], 9).T)
+        runs.append([{name: data[order] for name, data in step.items()} for step in steps])
+    good, source = True, "the mirror image"
+    start = np.abs(runs[0][0]["x"] - runs[1][0]["x"]).max()
+    good &= show("particles: start", float(start), 0, 1e-12, source)
+    (a0, a), (b0, b) = runs
+    path, image = a["x"] - a0["x"], b["x"] - b0["x"]
+    good &= show("particles: path", relative(path, image, np.abs(path).max()), 0, tolerance, source)
+    for name in sorted({"velocity", "stress"} & set(a)):
+        one, two = a[name].astype(float), b[name].astype(float)
+        value = relative(one, two, np.abs(one).max())
+        good &= show(f"particles: {name}", value, 0, max(tolerance, SINGLE), source)
+    tables = [read_table(Path(f"{run}_energy.csv")) for run in (first, second)]
+    for name in ("kinetic", "strain", "external"):
+        value = relative(tables[0][name], tables[1][name], np.abs(tables[0][name]).max())
+        good &= show(f"energy: {name}", value, 0, tolerance, source)
+    return good
+
+
 def show(name: str, value: float, expected: float, tolerance: float, source: str) -> bool:
     """Print a row; tells whether it holds."""
     good = math.isfinite(value) and abs(value - expected) <= tolerance
@@ -118,10 +158,10 @@ def names_of(run: str) -> dict:
     """What values in a table of checks can be made of.
 
     `energy` and `probe` are dictionaries of columns; `start` and `last` those of the particles'
-    first and last step; `np`, and Python's `abs`, `max`, `min`, `sum`.
+    first and last step; `np`, and some functions of Python.
     """
     path = Path(run)
-    names = {"np": np, "abs": abs, "max": max, "min": min, "sum": sum}
+    names = {"np": np, "abs": abs, "max": max, "min": min, "len": len, "set": set}
     for kind in ("energy", "probe"):
         table = path.parent / f"{path.name}_{kind}.csv"
         if table.exists():
@@ -155,6 +195,8 @@ def main(words: list[str]) -> int:
     elif command == "agree":
         tolerance = float(rest[2]) if len(rest) > 2 else 1e-10
         good = agree(rest[0], rest[1], tolerance, SINGLE, "the same run on other ranks")
+    elif command == "mirror":
+        good = mirror(rest[0], rest[1], "xyz".index(rest[2]), float(rest[3]))
     else:
         good = check(rest[0], sys.stdin.read())
     return 0 if good else 1
