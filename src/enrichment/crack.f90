@@ -292,12 +292,13 @@ contains
       if (total > 0) v = v/total
    end subroutine weighted_velocity
 
-   !> Bring the vertices of all ranks together, let those without material follow, and renew the
-   !> geometry. Collective.
-   subroutine gather_crack(crack, comm, grid)
+   !> Bring the vertices of all ranks together, let those without material follow if it is time to,
+   !> and renew the geometry. Collective.
+   subroutine gather_crack(crack, comm, grid, follow)
       type(crack_t), intent(inout) :: crack
       type(comm_t), intent(in) :: comm
       type(grid_t), intent(in) :: grid
+      logical, intent(in) :: follow   !! at steps that do not depend on the number of ranks
       real(wp), allocatable :: state(:, :)
       integer :: v
 
@@ -316,7 +317,7 @@ contains
          crack%surface%up(:, v) = state(1:3, v)
          crack%surface%um(:, v) = state(4:6, v)
       end do
-      if (any(crack%material) .and. .not. all(crack%material)) then
+      if (follow .and. any(crack%material) .and. .not. all(crack%material)) then
          call fill_void(crack%surface, crack%material)
       end if
       call refresh_geometry(crack%surface)

@@ -49,7 +49,7 @@ contains
       call start_drawing(cracks, names, units, drawn, fields)
       first = 0
       do i = 1, size(cracks)
-         call gather_crack(cracks(i), m%comm, m%grid)
+         call gather_crack(cracks(i), m%comm, m%grid, .true.)
          do k = 1, size(fields)
             call fill_field(cracks(i), i, first, fields(k))
          end do

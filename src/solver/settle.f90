@@ -11,7 +11,7 @@ module xmpm_settle
    use xmpm_migration, only: rebin, exchange
    use xmpm_sharing, only: mark_mine
    use xmpm_boundary, only: find_rows
-   use xmpm_crack, only: gather_crack, has_drifted, find_near
+   use xmpm_crack, only: gather_crack, has_drifted, find_near, rule_graded
    use xmpm_split, only: split_nodes
    use xmpm_ledger, only: note_energies
    use xmpm_layout, only: admit_blocks, repartition, count_unknown
@@ -34,7 +34,7 @@ contains
       type(model_t), intent(inout) :: m
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: worst(8)
-      logical :: near_moved
+      logical :: near_moved, shared_anew
       integer :: lost
 
       call note_energies(m)
@@ -64,10 +64,10 @@ contains
       end if
       call stop_stage(m%clock, stage_migration)
       if (allocated(error)) return
-      call keep_balance(m, error)
+      call keep_balance(m, shared_anew, error)
       if (allocated(error)) return
       m%split_again = m%split_again .or. worst(6) > 0 .or. (worst(4) > 0 .and. size(m%cracks) > 0)
-      call keep_cracks(m, worst(8) > 0, error)
+      call keep_cracks(m, worst(8) > 0 .or. shared_anew, error)
       if (mod(m%step, wave_interval) == 0) call find_wave_speed(m)
    end subroutine settle
 
@@ -109,12 +109,14 @@ contains
    end function lost_message
 
    !> Sort the chunks when many particles moved; divide the work anew when it is out of balance.
-   subroutine keep_balance(m, error)
+   subroutine keep_balance(m, shared_anew, error)
       type(model_t), intent(inout) :: m
+      logical, intent(out) :: shared_anew   !! blocks may have changed their ranks
       type(error_t), allocatable, intent(out) :: error
 
-      if (m%comm%size > 1 .and. m%imbalance > m%options%imbalance &
-         .and. mod(m%step, balance_interval) == 0) then
+      shared_anew = m%comm%size > 1 .and. m%imbalance > m%options%imbalance &
+         .and. mod(m%step, balance_interval) == 0
+      if (shared_anew) then
          call start_stage(m%clock, stage_migration)
          call repartition(m, error)
          call stop_stage(m%clock, stage_migration)
@@ -128,27 +130,30 @@ contains
       m%moved = 0
    end subroutine keep_balance
 
-   !> Keep surfaces, level sets and split nodes up with the motion.
+   !> Keep surfaces, level sets and split nodes up with the motion. What depends on the number of
+   !> ranks (who moves a vertex) must not decide when level sets are renewed.
    subroutine keep_cracks(m, stale, error)
       type(model_t), intent(inout) :: m
-      logical, intent(in) :: stale   !! a vertex left the blocks of its rank
+      logical, intent(in) :: stale   !! a vertex or the blocks have changed rank
       type(error_t), allocatable, intent(out) :: error
-      logical :: drifted
+      logical :: due, drifted
       integer :: i
 
       if (size(m%cracks) == 0) return
       call start_stage(m%clock, stage_crack)
-      if (stale .or. m%split_again .or. mod(m%step, crack_interval) == 0) then
-         drifted = .false.
+      due = mod(m%step, crack_interval) == 0
+      drifted = .false.
+      if (due .or. stale .or. (m%split_again .and. any(m%cracks%rule /= rule_graded))) then
          do i = 1, size(m%cracks)
-            if (.not. (stale .or. mod(m%step, crack_interval) == 0)) cycle
-            call gather_crack(m%cracks(i), m%comm, m%grid)
-            drifted = drifted .or. has_drifted(m%cracks(i), m%grid%lattice%size)
+            call gather_crack(m%cracks(i), m%comm, m%grid, due)
+            if (due) drifted = drifted .or. has_drifted(m%cracks(i), m%grid%lattice%size)
          end do
-         if (drifted) call renew_level_sets(m, error)
-         call agree_on_error(m%comm, error)
-         if (.not. allocated(error) .and. (drifted .or. m%split_again)) call renew_splits(m, error)
       end if
+      if (drifted) then
+         call renew_level_sets(m, error)
+         call agree_on_error(m%comm, error)
+      end if
+      if (.not. allocated(error) .and. (drifted .or. m%split_again)) call renew_splits(m, error)
       call stop_stage(m%clock, stage_crack)
    end subroutine keep_cracks
 
