@@ -164,7 +164,8 @@ contains
             if (p%count(c) == 0) cycle
             do k = p%count(c) + 1, lanes
                hold = hold .and. all(abs(p%q(k, c_v:, c)) <= 0) .and. p%id(k, c) == 0 &
-                  .and. all([(abs(p%q(k, i, c) - 0.5_wp - aint(p%q(k, i, c))) <= 0, i=1, 3)])
+                  .and. all([(abs(p%q(k, i, c) - 0.5_wp - real(floor(p%q(k, i, c)), wp)) <= 0, &
+                  i=1, 3)])
                if (p%attached(c) > 0) hold = hold .and. all(abs(p%near(k, :, p%attached(c))) <= 0)
             end do
          end do
