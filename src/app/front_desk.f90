@@ -36,7 +36,8 @@ contains
       character(len=1), parameter :: nl = new_line('a')
 
       text = 'xmpm3d '//version//nl//'source    '//git_hash//nl//'compiler  '//compiler//nl// &
-         'flags     '//flags//nl//'MPI       '//mpi_version()//nl//'HDF5      '//hdf5_version()//nl// &
+         'flags     '//flags//nl//'MPI       '//mpi_version()//nl//'HDF5      '//hdf5_version()// &
+         nl// &
          'METIS     '//metis_version
    end function version_text
 

@@ -15,7 +15,8 @@ module xmpm_error
    !> A failure: allocated where something went wrong, unallocated where all is well.
    type :: error_t
       integer :: code = code_usage              !! exit code of the program
-      character(len=:), allocatable :: message  !! where, what, and what is allowed; lines split by new_line
+      character(len=:), allocatable :: message  !! where, what, and what is allowed; lines split by
+                                                !! new_line
    end type error_t
 
 contains

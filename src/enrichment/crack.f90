@@ -32,7 +32,8 @@ module xmpm_crack
    integer, parameter :: rule_full = 3     !! nodes of cells that are cut all through
    integer, parameter :: rule_cut = 4      !! nodes of every cell that the crack touches
 
-   real(wp), parameter :: drift = 0.02_wp  !! relative motion after which level sets are renewed [cells]
+   real(wp), parameter :: drift = 0.02_wp  !! relative motion after which level sets are renewed
+                                           !! [cells]
 
    !> One crack.
    type :: crack_t
@@ -107,7 +108,8 @@ contains
       allocate (phi(crack%surface%vertex_count))
       call vertex_phi(crack%surface, crack%front, phi)
       do v = 1, size(phi)
-         call jump_weight(1.0_wp, phi(v), [1.0_wp, 0.0_wp, 0.0_wp], crack%ramp*h, crack%ramp_end*h, &
+         call jump_weight(1.0_wp, phi(v), [1.0_wp, 0.0_wp, 0.0_wp], crack%ramp*h, &
+            crack%ramp_end*h, &
             crack%weight(v), slope)
       end do
    end subroutine weigh_vertices
@@ -338,7 +340,9 @@ contains
       shift = sum(crack%surface%x - crack%evaluated, dim=2)/real(n, wp)
       drifted = .false.
       do v = 1, n
-         if (norm2(crack%surface%x(:, v) - crack%evaluated(:, v) - shift) > drift*h) drifted = .true.
+         if (norm2(crack%surface%x(:, v) - crack%evaluated(:, v) - shift) > drift*h) then
+            drifted = .true.
+         end if
       end do
    end function has_drifted
 end module xmpm_crack

@@ -37,7 +37,8 @@ contains
          do d = 0, n - 2
             do b = 0, n - 2
                do a = 0, n - 2
-                  cell = rows(1 + a + n*(b + n*d) + [0, 1, n, n + 1, n*n, n*n + 1, n*n + n, n*n + n + 1])
+                  cell = rows(1 + a + n*(b + n*d) + &
+                     [0, 1, n, n + 1, n*n, n*n + 1, n*n + n, n*n + n + 1])
                   call judge_cell(crack, grid, cell, bit, bits)
                end do
             end do
@@ -58,14 +59,17 @@ contains
       do k = 1, 8
          x(:, k) = node_position(grid, cell(k))
       end do
-      call evaluate_level_sets(crack%surface, crack%index, crack%front, 2*near_reach(grid%lattice), &
+      call evaluate_level_sets(crack%surface, crack%index, crack%front, &
+         2*near_reach(grid%lattice), &
          x, psi, phi, e1)
       if (any(psi >= 0.5_wp*beyond_reach)) return
       if (.not. cell_is_crossed(psi)) return
       select case (crack%rule)
       case (rule_node)
          do k = 1, 8
-            if (node_is_behind_front(phi(k), grid%lattice%size)) bits(cell(k)) = ibset(bits(cell(k)), bit)
+            if (node_is_behind_front(phi(k), grid%lattice%size)) then
+               bits(cell(k)) = ibset(bits(cell(k)), bit)
+            end if
          end do
       case (rule_full)
          if (cell_is_completely_cut(psi, phi)) bits(cell) = ibset(bits(cell), bit)

@@ -1,7 +1,7 @@
 !> Which nodes are split, their rows, and the bins that must tell sides apart.
 !>
-!> A node is split by a crack where particles with H > 0 and with H < 0 reach it; the sharp rules ask
-!> besides that the node belong to the cells or places that they name.
+!> A node is split by a crack where particles with H > 0 and with H < 0 reach it; the sharp rules
+!> ask besides that the node belong to the cells or places that they name.
 module xmpm_split
    use xmpm_kinds, only: wp
    use xmpm_error, only: error_t, raise, code_numerics

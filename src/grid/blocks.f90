@@ -21,7 +21,8 @@ module xmpm_blocks
       integer, allocatable :: place(:, :)       !! (3,n) lattice place of each block
       integer, allocatable :: tile(:, :)        !! (width**3,n) row of each node of a tile
       integer, allocatable :: node_block(:, :)  !! (3,n_node_blocks) lattice place
-      integer(i8), allocatable :: touched(:)    !! (n_node_blocks) bit per node that this rank touches
+      integer(i8), allocatable :: touched(:)    !! (n_node_blocks) bit per node that this rank
+                                                !! touches
       type(hash_map_t) :: find                  !! key to block of this rank
       type(hash_map_t) :: find_nodes            !! key to node block of this rank
       type(hash_map_t) :: owner                 !! key to rank, all blocks of the run
@@ -90,7 +91,7 @@ contains
       end do
       allocate (ordered(size(keys)))
       ordered(:count(edge)) = pack(keys, edge)
-      ordered(count(edge) + 1:) = pack(keys,.not. edge)
+      ordered(count(edge) + 1:) = pack(keys, .not. edge)
       blocks%n = size(keys)
       blocks%n_edge = count(edge)
       if (allocated(blocks%place)) deallocate (blocks%place)

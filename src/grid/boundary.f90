@@ -23,7 +23,8 @@ module xmpm_boundary
       integer :: set = 0                         !! bit of the set
       logical :: holds(3) = .false.              !! components that are prescribed
       logical :: accelerates = .false.           !! `value` is an acceleration
-      real(wp) :: value(3) = 0                   !! times its curve: [length/time] or [length/time^2]
+      real(wp) :: value(3) = 0                   !! times its curve: [length/time] or
+                                                 !! [length/time^2]
       real(wp) :: velocity(3) = 0                !! prescribed now [length/time]
       integer, allocatable :: rows(:)            !! rows of the nodes
       real(wp) :: reaction(3) = 0                !! force on the nodes in the last step, this rank

@@ -15,7 +15,8 @@ module xmpm_grid
    integer, parameter :: row_fields = 8   !! values of a row
    integer, parameter :: f_mass = 1       !! mass
    integer, parameter :: f_velocity = 2   !! 2:4 momentum, then velocity after the update
-   integer, parameter :: f_change = 5     !! 5:7 force, then change of velocity, then MUSL's velocity
+   integer, parameter :: f_change = 5     !! 5:7 force, then change of velocity, then MUSL's
+                                          !! velocity
 
    !> Rows and the blocks that name them.
    type :: grid_t
@@ -24,7 +25,8 @@ module xmpm_grid
       integer :: n_plain = 0                   !! rows of ordinary nodes
       integer :: n_rows = 0                    !! all rows
       integer, allocatable :: parent(:)        !! (n_plain+1:) ordinary row of a split node's row
-      real(wp), allocatable :: node(:, :)      !! (8,rows) mass, momentum or velocity, force or change
+      real(wp), allocatable :: node(:, :)      !! (8,rows) mass, momentum or velocity, force or
+                                               !! change
       real(wp), allocatable :: second(:, :)    !! (3,rows) momentum of MUSL's second map
       logical, allocatable :: active(:)        !! (node blocks) whether a row holds anything
       logical, allocatable :: always(:)        !! (node blocks) rows are shared: active in any case

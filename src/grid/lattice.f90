@@ -1,7 +1,8 @@
 !> The lattice: cells, nodes, bins and blocks of an unbounded regular grid.
 !>
 !> A bin collects the particles that touch the same nodes: a cell for linear functions, the cube
-!> around a node for GIMP. A block is 4 x 4 x 4 bins; its tile is the cube of nodes that its bins touch.
+!> around a node for GIMP. A block is 4 x 4 x 4 bins; its tile is the cube of nodes that its bins
+!> touch.
 module xmpm_lattice
    use xmpm_kinds, only: wp, i8
    implicit none

@@ -5,7 +5,8 @@ module xmpm_momentum
    implicit none
    private
 
-   public :: force_out_of_balance, advance_momentum, blend_change, velocity_from_second, nodal_work_t, change_from_velocity
+   public :: force_out_of_balance, advance_momentum, blend_change, velocity_from_second, &
+      nodal_work_t, change_from_velocity
 
    !> Work that nodes did or took in a step, counted once over all ranks [energy].
    type :: nodal_work_t
@@ -17,8 +18,8 @@ contains
 
    !> Velocity after the step and its change: eq. 4 and 29, row by row.
    !>
-   !> change = dt (f/m + b - rate v); fields 2:4 become the new velocity, 5:7 the change. Rows without
-   !> mass become zero. Work is exact for the change of the rows' kinetic energy.
+   !> change = dt (f/m + b - rate v); fields 2:4 become the new velocity, 5:7 the change. Rows
+   !> without mass become zero. Work is exact for the change of the rows' kinetic energy.
    subroutine advance_momentum(grid, dt, gravity, rate, work)
       type(grid_t), intent(inout) :: grid
       real(wp), intent(in) :: dt           !! from v(n-1/2) to v(n+1/2) [time]

@@ -51,8 +51,9 @@ contains
       type(deck_t), intent(inout) :: deck
       type(block_t), intent(in) :: block
 
-      if (index(block%name, '/') > 0) &
+      if (index(block%name, '/') > 0) then
          call complain(deck, block, '', 'the name heads the names of files and must not hold a /')
+      end if
    end subroutine check_job
 
    subroutine check_material(deck, block)
@@ -129,8 +130,9 @@ contains
       fault = ''
       select case (shape)
       case ('box')
-         if (any(n(4:6) <= n(1:3))) &
+         if (any(n(4:6) <= n(1:3))) then
             fault = 'the second corner must lie beyond the first in x, y and z'
+         end if
       case ('cylinder', 'tube')
          if (norm2(n(4:6) - n(1:3)) <= 0.0_wp) fault = 'the two ends of the axis are the same point'
          if (n(7) < 0.0_wp .or. n(size(n)) <= 0.0_wp) fault = 'the radius must be greater than 0'
@@ -156,8 +158,9 @@ contains
       real(wp), allocatable :: n(:)
       integer :: last
 
-      if (lower(block%name) == 'step' .or. lower(block%name) == 'ramp') &
+      if (lower(block%name) == 'step' .or. lower(block%name) == 'ramp') then
          call complain(deck, block, '', 'step and ramp are built in: take another name')
+      end if
       if (.not. valid(block, 'table')) return
       n = reals_of(block, 'table')
       last = size(n)
@@ -173,23 +176,28 @@ contains
       type(deck_t), intent(inout) :: deck
       type(block_t), intent(in) :: block
 
-      if (valid(block, 'cfl') .and. real_of(block, 'cfl') > 1.0_wp) &
+      if (valid(block, 'cfl') .and. real_of(block, 'cfl') > 1.0_wp) then
          call warn(deck, block, 'cfl', 'a time step above the stability limit (cfl = 1) blows up')
-      if (text_of(block, 'scheme') == 'usl') &
+      end if
+      if (text_of(block, 'scheme') == 'usl') then
          call warn(deck, block, 'scheme', &
          'usl is unstable where a node carries little mass: musl is the safe choice')
-      if (has(block, 'step') .and. given(block, 'cfl')) &
+      end if
+      if (has(block, 'step') .and. given(block, 'cfl')) then
          call warn(deck, block, 'cfl', 'it is not used, since a fixed step is given')
+      end if
    end subroutine check_time
 
    subroutine check_relax(deck, block)
       type(deck_t), intent(inout) :: deck
       type(block_t), intent(in) :: block
 
-      if (text_of(block, 'method') == 'viscous' .and. .not. has(block, 'rate')) &
+      if (text_of(block, 'method') == 'viscous' .and. .not. has(block, 'rate')) then
          call complain(deck, block, 'method', "viscous relaxation needs 'rate'")
-      if (text_of(block, 'method') == 'kinetic') &
+      end if
+      if (text_of(block, 'method') == 'kinetic') then
          call refuse(deck, block, 'rate', 'it belongs to method = viscous')
+      end if
    end subroutine check_relax
 
    !> Fields are listed once, and none stands alone.
@@ -211,8 +219,9 @@ contains
       if (.not. valid(block, key)) return
       fields = texts_of(block, key)
       do i = 1, size(fields)
-         if (fields(i)%s == 'none' .and. size(fields) > 1) &
+         if (fields(i)%s == 'none' .and. size(fields) > 1) then
             call complain(deck, block, key, "'none' stands beside other fields")
+         end if
          do j = 1, i - 1
             if (fields(i)%s /= fields(j)%s) cycle
             call complain(deck, block, key, "'"//fields(i)%s//"' is listed twice")
@@ -245,8 +254,9 @@ contains
             call give_number(block, 'every', real_of(find_block(deck, 'time', 1), 'end'))
             call give_number(block, 'history', real_of(block, 'every'))
          case ('boundary')
-            if (index('fixed velocity acceleration', text_of(block, 'type')) > 0) &
+            if (index('fixed velocity acceleration', text_of(block, 'type')) > 0) then
                call give_text(block, 'components', 'xyz')
+            end if
          case ('probe')
             if (has(block, 'point')) call give_text(block, 'quantity', 'displacement')
          end select

@@ -82,9 +82,10 @@ contains
 
       if (.not. valid(block, 'sector')) return
       angles = reals_of(block, 'sector')
-      if (angles(2) <= angles(1) .or. angles(2) - angles(1) > 360.0_wp) &
+      if (angles(2) <= angles(1) .or. angles(2) - angles(1) > 360.0_wp) then
          call complain(deck, block, 'sector', &
          'it must go from a smaller to a greater angle, at most 360 degrees apart')
+      end if
    end subroutine check_sector
 
    !> Corners in threes of numbers, in one plane, no two neighbours the same.

@@ -108,8 +108,9 @@ contains
 
       allocate (names(0))
       do i = 1, size(deck%blocks)
-         if (deck%blocks(i)%keyword == keyword .and. len(deck%blocks(i)%name) > 0) &
+         if (deck%blocks(i)%keyword == keyword .and. len(deck%blocks(i)%name) > 0) then
             call append(names, deck%blocks(i)%name)
+         end if
       end do
    end subroutine collect_names
 

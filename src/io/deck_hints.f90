@@ -22,8 +22,9 @@ contains
             cost = merge(0, 1, a(i:i) == b(j:j))
             d(i, j) = min(d(i - 1, j) + 1, d(i, j - 1) + 1, d(i - 1, j - 1) + cost)
             if (i > 1 .and. j > 1) then
-               if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) &
+               if (a(i:i) == b(j - 1:j - 1) .and. a(i - 1:i - 1) == b(j:j)) then
                   d(i, j) = min(d(i, j), d(max(i - 2, 0), max(j - 2, 0)) + 1)
+               end if
             end if
          end do
       end do

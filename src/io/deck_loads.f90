@@ -62,11 +62,13 @@ contains
       end if
       body = find_block(deck, 'body', i)
       call set_texts(block, 'face', body%name//':'//face)
-      if (face == 'inside' .and. .not. has(body, 'tube')) &
+      if (face == 'inside' .and. .not. has(body, 'tube')) then
          call complain(deck, block, 'face', "only a tube has a face 'inside'")
+      end if
       if (face == 'side' .and. .not. (has(body, 'tube') .or. has(body, &
-         'cylinder') .or. has(body, 'sphere'))) &
+         'cylinder') .or. has(body, 'sphere'))) then
          call complain(deck, block, 'face', "only a cylinder, a tube or a sphere has a face 'side'")
+      end if
    end subroutine check_face
 
    subroutine check_boundary(deck, block)
@@ -80,8 +82,9 @@ contains
       call check_time_keys(deck, block)
       if (.not. valid(block, 'type')) return
       call check_type(deck, block)
-      if (valid(block, 'components')) &
+      if (valid(block, 'components')) then
          call set_texts(block, 'components', in_order(text_of(block, 'components')))
+      end if
    end subroutine check_boundary
 
    !> The keys that each type needs, and no others.
@@ -96,16 +99,21 @@ contains
          return
       end if
       call refuse(deck, block, 'value', 'it belongs to type = velocity and acceleration')
-      if (text_of(block, 'curve') /= 'step') &
+      if (text_of(block, 'curve') /= 'step') then
          call refuse(deck, block, 'curve', 'it belongs to type = velocity and acceleration')
-      if (type == 'symmetry' .and. .not. has(block, 'plane')) &
+      end if
+      if (type == 'symmetry' .and. .not. has(block, 'plane')) then
          call complain(deck, block, 'type', &
          'symmetry is about a plane: give plane = x 0, for example')
-      if (type == 'roller' .and. .not. has(block, 'plane') .and. .not. has(block, 'components')) &
+      end if
+      if (type == 'roller' .and. .not. has(block, 'plane') .and. &
+         .not. has(block, 'components')) then
          call complain(deck, block, 'type', &
          'a roller away from a plane needs the components that it holds')
-      if (type == 'symmetry' .or. (type == 'roller' .and. has(block, 'plane'))) &
+      end if
+      if (type == 'symmetry' .or. (type == 'roller' .and. has(block, 'plane'))) then
          call refuse(deck, block, 'components', 'the plane says which component is held')
+      end if
    end subroutine check_type
 
    !> Letters out of x y z, each once; kept as one text.
@@ -197,8 +205,9 @@ contains
 
       if (.not. valid(block, 'box')) return
       n = reals_of(block, 'box')
-      if (any(n(4:6) < n(1:3))) &
+      if (any(n(4:6) < n(1:3))) then
          call complain(deck, block, 'box', &
          'the second corner must not lie before the first in x, y or z')
+      end if
    end subroutine check_box
 end module xmpm_deck_loads

@@ -115,8 +115,9 @@ contains
          block%name = tokens%list(place)%text
          place = place + 1
       end if
-      if (len(block%name) == 0 .and. keyword%naming == must_have_name) &
+      if (len(block%name) == 0 .and. keyword%naming == must_have_name) then
          call complain(deck, block, '', 'a name must follow the keyword on its line')
+      end if
       if (.not. is_free_value(tokens, place)) return
       if (row_at(tokens, place) /= block%row .or. kind_at(tokens, place - 1) /= token_value) return
       if (key_place(keyword, lower(tokens%list(place)%text)) > 0) return

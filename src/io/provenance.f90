@@ -8,7 +8,8 @@ module xmpm_provenance
    implicit none
    private
 
-   public :: mpi_version, provenance_t, start_provenance, provenance_names, provenance_values, write_provenance
+   public :: mpi_version, provenance_t, start_provenance, provenance_names, provenance_values, &
+      write_provenance
 
    !> Facts that every file of a run carries, the same on every rank.
    type :: provenance_t

@@ -54,7 +54,8 @@ contains
    !> Stress, volume and stress work of one step.
    !>
    !> s' = s + r + (W r - r W)/2 + C : D dt with r = dt (W s - s W): the rotation is exact to second
-   !> order, so that |s| does not grow as the body turns. Stress power uses the mean of both stresses.
+   !> order, so that |s| does not grow as the body turns. Stress power uses the mean of both
+   !> stresses.
    pure subroutine update_elastic(law, gradient, dt, q, work)
       class(elastic_t), intent(in) :: law
       real(wp), intent(in) :: gradient(8, 9)
@@ -73,8 +74,8 @@ contains
       integer :: p
 
       half = 0.5_wp*dt
-      !$omp simd private(d1, d2, d3, d4, d5, d6, a, b, c, tr, pressure, power, s1, s2, s3, s4, s5, s6, &
-      !$omp & r1, r2, r3, r4, r5, r6)
+      !$omp simd private(d1, d2, d3, d4, d5, d6, a, b, c, tr, pressure, power, &
+      !$omp & s1, s2, s3, s4, s5, s6, r1, r2, r3, r4, r5, r6)
       do p = 1, 8
          d1 = dt*l(p, 1)
          d2 = dt*l(p, 5)

@@ -3,7 +3,8 @@
 !> Every rank that shares a row gets the parts of all others and adds them in rank order, its own
 !> part at its own place, so that all hold the same bits.
 module xmpm_halo
-   use mpi_f08, only: MPI_Comm, MPI_Request, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_STATUSES_IGNORE, &
+   use mpi_f08, only: MPI_Comm, MPI_Request, MPI_DOUBLE_PRECISION, MPI_INTEGER, &
+      MPI_STATUSES_IGNORE, &
       MPI_Irecv, MPI_Isend, MPI_Waitall
    use xmpm_kinds, only: wp
    use xmpm_communicator, only: comm_t

@@ -101,17 +101,17 @@ contains
    pure function keep_places(part, previous, weights, n_parts) result(named)
       integer, intent(in) :: part(:), previous(:), weights(:), n_parts
       integer :: named(size(part))
-      integer :: common(0:n_parts - 1, 0:n_parts - 1), name(0:n_parts - 1), i, best(2)
+      integer :: shared(0:n_parts - 1, 0:n_parts - 1), name(0:n_parts - 1), i, best(2)
       logical :: free(0:n_parts - 1, 0:n_parts - 1)
 
-      common = 0
+      shared = 0
       do i = 1, size(part)
          if (previous(i) < 0 .or. previous(i) >= n_parts) cycle
-         common(part(i), previous(i)) = common(part(i), previous(i)) + weights(i)
+         shared(part(i), previous(i)) = shared(part(i), previous(i)) + weights(i)
       end do
       free = .true.
       do i = 1, n_parts
-         best = maxloc(common, mask=free) - 1
+         best = maxloc(shared, mask=free) - 1
          name(best(1)) = best(2)
          free(best(1), :) = .false.
          free(:, best(2)) = .false.

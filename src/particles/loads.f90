@@ -130,7 +130,8 @@ contains
       type(sided_t), intent(in) :: sided
       real(wp), intent(in) :: time, dt        !! [time]
       type(grid_t), intent(in) :: grid
-      real(wp) :: force(lanes, 3), q(lanes, 14), tile(8, tile_nodes), new(lanes, 3), change(lanes, 3)
+      real(wp) :: force(lanes, 3), q(lanes, 14), tile(8, tile_nodes), new(lanes, 3), &
+         change(lanes, 3)
       real(wp) :: factor
       integer :: c, s, i, rows(grid%lattice%reach**3), offsets(grid%lattice%reach**3)
       type(frame_t) :: frame

@@ -1,8 +1,8 @@
 !> Bins that touch split nodes: their rows for each side, and the particles' weights of the sides.
 !>
-!> With k cracks in reach a bin has 2**k sets of rows; set s takes the plus side of crack i where bit
-!> i - 1 of s is set. A particle's weight of a set is the product of (1 + H)/2 or (1 - H)/2, which
-!> add up to one: u_p = sum over sets of g_s sum over nodes of N v_s.
+!> With k cracks in reach a bin has 2**k sets of rows; set s takes the plus side of crack i where
+!> bit i - 1 of s is set. A particle's weight of a set is the product of (1 + H)/2 or (1 - H)/2,
+!> which add up to one: u_p = sum over sets of g_s sum over nodes of N v_s.
 module xmpm_sided
    use xmpm_kinds, only: wp
    use xmpm_lattice, only: bins_per_block

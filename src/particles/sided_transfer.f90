@@ -100,7 +100,8 @@ contains
       do while (c > 0)
          call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, 5, change)
          do i = 1, 3
-            p%q(:, 3 + i, c) = merge(keep*p%q(:, 3 + i, c) + change(:, i), 0.0_wp, p%q(:, c_m, c) > 0)
+            p%q(:, 3 + i, c) = merge(keep*p%q(:, 3 + i, c) + change(:, i), 0.0_wp, &
+               p%q(:, c_m, c) > 0)
          end do
          if (remap) then
             do i = 1, 3

@@ -60,7 +60,8 @@ module xmpm_storage
       integer(i8) :: id = 0                     !! number for life
       integer(i8) :: sets = 0                   !! bit per named set
       integer :: body = 0                       !! body
-      real(wp), allocatable :: near(:)          !! (8*slots) crack slots, unallocated far from cracks
+      real(wp), allocatable :: near(:)          !! (8*slots) crack slots, unallocated far from
+                                                !! cracks
    end type record_t
 
 contains

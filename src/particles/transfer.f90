@@ -311,9 +311,11 @@ contains
                if (s == 0) then
                   call kernels%gradient(p%q(:, :, c), frame, tile, gradient, value)
                else
-                  call gradient_sided(p, c, kernels, sided, s, offsets, frame, grid, gradient, value)
+                  call gradient_sided(p, c, kernels, sided, s, offsets, frame, grid, gradient, &
+                     value)
                end if
-               call bodies%laws(bodies%law_of(p%body(c)))%law%update(gradient, dt, p%q(:, :, c), work)
+               call bodies%laws(bodies%law_of(p%body(c)))%law%update(gradient, dt, p%q(:, :, c), &
+                  work)
                call move_lanes(value, move, frame, p%q(:, :, c), tally%volume, left)
                if (left) then
                   n_movers = n_movers + 1
@@ -388,7 +390,8 @@ contains
                if (s == 0) then
                   call kernels%gather(p%q(:, :, c), frame, tile, 2, value)
                else
-                  call gradient_sided(p, c, kernels, sided, s, offsets, frame, grid, gradient, value)
+                  call gradient_sided(p, c, kernels, sided, s, offsets, frame, grid, gradient, &
+                     value)
                end if
                call move_lanes(value, dt, frame, p%q(:, :, c), tally%volume, left)
                if (left) then

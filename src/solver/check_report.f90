@@ -34,11 +34,14 @@ contains
          ' blocks')
       call log_message(log, 'particles a bin '//to_text(anint(100*real(m%n_particles, wp) &
          /real(max(1_i8, counts(1)), wp))/100))
-      call log_message(log, 'wave speed      '//to_text(m%wave_speed)//' '//unit_text(deck, 'velocity'))
-      call log_message(log, 'time step       '//to_text(dt)//' '//unit_text(deck, 'time')//', about '// &
+      call log_message(log, 'wave speed      '//to_text(m%wave_speed)//' '// &
+         unit_text(deck, 'velocity'))
+      call log_message(log, 'time step       '//to_text(dt)//' '//unit_text(deck, 'time')// &
+         ', about '// &
          to_text(ceiling(m%options%end_time/dt, i8))//' steps')
       if (size(m%cracks) == 0) return
-      call log_message(log, 'rows of split nodes '//to_text(counts(2))//', particles near cracks '// &
+      call log_message(log, 'rows of split nodes '//to_text(counts(2))// &
+         ', particles near cracks '// &
          to_text(counts(4)))
       do i = 1, size(m%cracks)
          call log_message(log, 'crack '//m%cracks(i)%name//': '// &

@@ -42,13 +42,14 @@ module xmpm_model
       real(wp) :: imbalance = 1.2_wp         !! threshold of repartition
    end type options_t
 
-   !> Energies of this rank; those of the last step stand beside those before it, so that the balance
-   !> can be taken at one time although velocities are known half a step later.
+   !> Energies of this rank; those of the last step stand beside those before it, so that the
+   !> balance can be taken at one time although velocities are known half a step later.
    type :: ledger_t
       real(wp) :: time = 0                     !! of the balance [time]
       real(wp) :: kinetic(2) = 0               !! before and after the last step
       real(wp) :: strain(2) = 0                !! stress work, likewise
-      real(wp) :: external(2) = 0              !! work of loads, conditions and body forces, likewise
+      real(wp) :: external(2) = 0              !! work of loads, conditions and body forces,
+                                               !! likewise
       real(wp) :: damping(2) = 0               !! lost to nodal damping, likewise
       real(wp) :: kinetic_start = 0            !! at the start, all ranks
       real(wp) :: largest = 0                  !! largest energy so far, the measure of the error
@@ -90,7 +91,8 @@ module xmpm_model
       integer, allocatable :: movers(:)       !! chunks that particles left
       integer :: n_movers = 0                 !! number of them
       integer(i8) :: moved = 0                !! particles that changed bin since the last sort
-      logical :: relaxing = .false.           !! before the start, the force out of balance is wanted
+      logical :: relaxing = .false.           !! before the start, the force out of balance is
+                                              !! wanted
       real(wp) :: force = 0                   !! sum of |m a| of the nodes while relaxing, this rank
    end type model_t
 

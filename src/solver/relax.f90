@@ -16,11 +16,11 @@ module xmpm_relax
 
 contains
 
-   !> Step with damping until the forces are in balance, then stop all motion and set the clock to 0.
+   !> Step with damping until the forces are in balance, then stop all motion at t = 0.
    !>
-   !> Kinetic damping stops all motion at each peak of kinetic energy; viscous damping takes the rate
-   !> of the deck. The residual is the sum over the nodes of |m a| over the
-   !> largest that it had with the reactions. Loads stay those of t = 0. Collective.
+   !> Kinetic damping stops all motion at each peak of kinetic energy; viscous damping takes the
+   !> rate of the deck. The residual is the sum over the nodes of |m a| over the largest that it
+   !> had with the reactions. Loads stay those of t = 0. Collective.
    subroutine relax(m, deck, log, error)
       type(model_t), intent(inout) :: m
       type(deck_t), intent(in) :: deck

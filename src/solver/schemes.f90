@@ -1,5 +1,5 @@
-!> The schemes of a step. Velocities live half a step before positions and stresses (leapfrog, fig. 6
-!> of 10.1002/nme.6653): v(n+1/2) = v(n-1/2) + (dt(n-1/2) + dt(n+1/2))/2 a(n).
+!> The schemes of a step. Velocities live half a step before positions and stresses (leapfrog, fig.
+!> 6 of 10.1002/nme.6653): v(n+1/2) = v(n-1/2) + (dt(n-1/2) + dt(n+1/2))/2 a(n).
 module xmpm_schemes
    use xmpm_kinds, only: wp
    use xmpm_stages, only: map_to_grid, advance_nodes, map_to_particles, strain_particles, &

@@ -86,14 +86,16 @@ contains
             if (m%particles%q(i, c_vol, c) > 0 .and. &
                sum(abs(m%particles%q(i, :, c))) < huge(1.0_wp)) cycle
             where_is = ': particle '//to_text(m%particles%id(i, c))//' at '// &
-               to_text(m%particles%q(i, 1:3, c))//' has volume '//to_text(m%particles%q(i, c_vol, c))
+               to_text(m%particles%q(i, 1:3, c))//' has volume '// &
+               to_text(m%particles%q(i, c_vol, c))
             exit
          end do
          if (len(where_is) > 0) exit
       end do
       if (len(where_is) > 0 .or. m%comm%size == 1) call raise(error, code_numerics, &
          'step '//to_text(m%step)//', time '//to_text(m%time)// &
-         ': a particle has a volume that is not positive, or a value that is not a number'//where_is)
+         ': a particle has a volume that is not positive, or a value that is not a number'// &
+         where_is)
       call agree_on_error(m%comm, error)
       if (.not. allocated(error)) call raise(error, code_numerics, 'step '//to_text(m%step)// &
          ': the energies are not numbers')

@@ -31,7 +31,8 @@ contains
    subroutine set_up(m, deck, error)
       type(model_t), intent(inout) :: m
       type(deck_t), intent(inout) :: deck                !! set-up adds to its problems
-      type(error_t), allocatable, intent(out) :: error   !! all problems of the deck, or one of files
+      type(error_t), allocatable, intent(out) :: error   !! all problems of the deck, or one of
+                                                         !! files
       type(body_plan_t), allocatable :: plans(:)
       integer :: i
 

@@ -89,7 +89,8 @@ contains
       call agree_on_error(m%comm, error)
       if (allocated(error)) return
       call lay_out(m, pack(keys, parts == m%comm%rank))
-      call clear_particles(m%particles, m%grid%blocks%n, expected(plans, keys, parts, m%comm%rank), &
+      call clear_particles(m%particles, m%grid%blocks%n, &
+         expected(plans, keys, parts, m%comm%rank), &
          merge(3, 0, size(m%cracks) > 0))
       do i = 1, size(plans)
          call fill_body(m, i, plans(i))
@@ -120,7 +121,8 @@ contains
          part = ''
          if (has(block, 'part')) part = text_of(block, 'part')
          units = find_block(deck, 'units', 1)
-         call read_particles(text_of(block, 'file'), part, particle_units_t(text_of(units, 'length'), &
+         call read_particles(text_of(block, 'file'), part, &
+            particle_units_t(text_of(units, 'length'), &
             text_of(units, 'time')), m%comm, plan%data, error)
       else
          call read_primitives(deck, block, plan%geometry)

@@ -94,7 +94,8 @@ contains
       do c = 1, p%n_chunks
          if (p%body(c) /= body) cycle
          do i = 1, p%count(c)
-            if (any(p%q(i, c_x:c_x + 2, c) < box(:3)) .or. any(p%q(i, c_x:c_x + 2, c) > box(4:))) cycle
+            if (any(p%q(i, c_x:c_x + 2, c) < box(:3)) .or. &
+               any(p%q(i, c_x:c_x + 2, c) > box(4:))) cycle
             call mark(p, i, c, bit)
          end do
       end do
@@ -306,8 +307,8 @@ contains
       call build(load%table, ids, all_areas)
    end subroutine gather_table
 
-   !> A set as a surface layer: areas of the file, or one particle's cross section along the traction.
-   !> Collective.
+   !> A set as a surface layer: areas of the file, or one particle's cross section along the
+   !> traction. Collective.
    subroutine load_layer(m, table, load)
       type(model_t), intent(in) :: m
       type(load_table_t), intent(in) :: table
@@ -378,7 +379,8 @@ contains
       associate (l => m%grid%lattice)
          place = (boundary%coordinate - l%origin(boundary%axis))/l%size
          if (abs(place - anint(place)) > 1e-6_wp) then
-            call complain(deck, block, 'plane', 'the plane is not one of grid nodes; the nearest is '// &
+            call complain(deck, block, 'plane', &
+               'the plane is not one of grid nodes; the nearest is '// &
                to_text(l%origin(boundary%axis) + l%size*anint(place)))
          end if
       end associate
@@ -411,8 +413,9 @@ contains
          boundary%holds = .true.
       case ('roller', 'symmetry')
          if (boundary%region /= region_plane) then
-            call complain(deck, block, 'type', kind//' needs plane = x|y|z VALUE, since it holds the &
-               &normal direction; a box or a set can be fixed, or given a velocity by components')
+            call complain(deck, block, 'type', kind//' needs plane = x|y|z VALUE, since it '// &
+               'holds the normal direction; a box or a set can be fixed, or given a velocity '// &
+               'by components')
          end if
          boundary%holds(boundary%axis) = .true.
       case default

@@ -3,7 +3,8 @@ module xmpm_setup_cracks
    use xmpm_kinds, only: wp
    use xmpm_text, only: lower
    use xmpm_error, only: error_t
-   use xmpm_deck, only: deck_t, block_t, count_blocks, find_block, has, flag_of, real_of, reals_of, &
+   use xmpm_deck, only: deck_t, block_t, count_blocks, find_block, has, flag_of, real_of, &
+      reals_of, &
       text_of, complain
    use xmpm_surface, only: build_surface
    use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_rectangle, make_polygon, make_disc, &
@@ -85,11 +86,13 @@ contains
          call make_polygon(reshape(points, [3, size(points)/3]), element, x, tri, error)
          return
       end if
-      call set_plane(reals_of(block, 'centre'), reals_of(block, 'along'), reals_of(block, 'across'), &
+      call set_plane(reals_of(block, 'centre'), reals_of(block, 'along'), &
+         reals_of(block, 'across'), &
          plane, error)
       if (allocated(error)) return
       if (flag_of(block, 'rectangle')) then
-         call make_rectangle(plane, [real_of(block, 'width'), real_of(block, 'depth')], element, x, &
+         call make_rectangle(plane, [real_of(block, 'width'), real_of(block, 'depth')], element, &
+            x, &
             tri, error)
          return
       end if

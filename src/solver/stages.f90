@@ -106,7 +106,9 @@ contains
 
       eta = 0
       if (m%options%xpic) eta = 1
-      if (m%options%pic > 0 .and. m%time < m%options%damped_until) eta = min(1.0_wp, m%options%pic*m%dt)
+      if (m%options%pic > 0 .and. m%time < m%options%damped_until) then
+         eta = min(1.0_wp, m%options%pic*m%dt)
+      end if
    end function pic_share
 
    !> Velocity that a condition prescribes at the end of the velocity step.
@@ -155,8 +157,8 @@ contains
       call finish_sum(m%halo, m%grid%second, 1, 3)
    end subroutine smooth
 
-   !> Particle velocities (eq. 43); with `remap` also MUSL's second map, whose velocity then stands in
-   !> fields 5:7.
+   !> Particle velocities (eq. 43); with `remap` also MUSL's second map, whose velocity then stands
+   !> in fields 5:7.
    subroutine map_to_particles(m, remap)
       type(model_t), intent(inout) :: m
       logical, intent(in) :: remap   !! whether the second map is wanted

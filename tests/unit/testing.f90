@@ -54,7 +54,8 @@ contains
       if (.not. allocated(error)) then
          call check(suite, sentence//' (no error was reported)', .false.)
       else
-         call check(suite, sentence//' (message: '//error%message//')', index(error%message, part) > 0)
+         call check(suite, sentence//' (message: '//error%message//')', &
+            index(error%message, part) > 0)
       end if
    end subroutine check_error
 
