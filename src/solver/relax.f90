@@ -93,7 +93,7 @@ contains
       real(wp), intent(inout) :: largest    !! force out of balance and reactions, the most so far
       real(wp), intent(out) :: residual
       real(wp) :: force
-      real(wp), allocatable :: reactions(:)
+      real(wp) :: reactions(3*size(m%boundaries))
       integer :: i
 
       reactions = [(m%boundaries(i)%reaction, i=1, size(m%boundaries))]

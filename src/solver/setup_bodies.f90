@@ -135,7 +135,7 @@ contains
       type(block_t), intent(in) :: block
       type(geometry_t), intent(inout) :: geometry
       type(error_t), allocatable :: failure
-      character(len=:), allocatable :: kind
+      character(len=32) :: kind
       integer :: e
       logical :: subtract
 
@@ -145,7 +145,7 @@ contains
          if (subtract) kind = kind(9:)
          if (all(kind /= [character(len=8) :: 'box', 'cylinder', 'tube', 'sphere'])) cycle
          if (.not. block%entries(e)%given) cycle
-         call add_primitive(geometry, kind, block%entries(e)%numbers, subtract, failure)
+         call add_primitive(geometry, trim(kind), block%entries(e)%numbers, subtract, failure)
          if (allocated(failure)) call complain(deck, block, block%entries(e)%key, failure%message)
       end do
    end subroutine read_primitives

@@ -78,22 +78,20 @@ contains
       integer, allocatable, intent(out) :: tri(:, :)
       type(error_t), allocatable, intent(out) :: error
       type(crack_plane_t) :: plane
-      real(wp), allocatable :: points(:)
       real(wp) :: axes(2)
 
       if (flag_of(block, 'polygon')) then
-         points = reals_of(block, 'points')
-         call make_polygon(reshape(points, [3, size(points)/3]), element, x, tri, error)
+         associate (points => reals_of(block, 'points'))
+            call make_polygon(reshape(points, [3, size(points)/3]), element, x, tri, error)
+         end associate
          return
       end if
       call set_plane(reals_of(block, 'centre'), reals_of(block, 'along'), &
-         reals_of(block, 'across'), &
-         plane, error)
+         reals_of(block, 'across'), plane, error)
       if (allocated(error)) return
       if (flag_of(block, 'rectangle')) then
          call make_rectangle(plane, [real_of(block, 'width'), real_of(block, 'depth')], element, &
-            x, &
-            tri, error)
+            x, tri, error)
          return
       end if
       if (flag_of(block, 'disc')) then
