@@ -1,10 +1,10 @@
 !> Where things are: blocks and their owners, rows, halo; and how that changes as bodies move.
 module xmpm_layout
-   use xmpm_kinds, only: i8
+   use xmpm_kinds, only: wp, i8
    use xmpm_error, only: error_t
    use xmpm_sort, only: sort_order, unique_sorted
    use xmpm_hash_map, only: value_of
-   use xmpm_communicator, only: gather_all
+   use xmpm_communicator, only: gather_all, sum_all
    use xmpm_partition, only: partition_blocks
    use xmpm_halo, only: make_halo
    use xmpm_lattice, only: block_key, block_of, bin_of, bins_per_block
@@ -117,11 +117,13 @@ contains
       call insert_own(m%particles, m%grid, m%comm%rank, m%outbox)
    end subroutine admit_blocks
 
-   !> Keys of this rank's blocks; without the empty ones where these are more than a quarter.
+   !> Keys of this rank's blocks; without the empty ones where these are more than a quarter of all,
+   !> counted over all ranks, so that the blocks do not depend on the number of these. Collective.
    function kept_keys(m) result(keys)
       type(model_t), intent(in) :: m
       integer(i8), allocatable :: keys(:)
       logical, allocatable :: full(:)
+      real(wp) :: counts(2)
       integer :: b
 
       allocate (keys(m%grid%blocks%n), full(m%grid%blocks%n))
@@ -129,7 +131,9 @@ contains
          keys(b) = block_key(m%grid%blocks%place(:, b))
          full(b) = any(m%particles%head(:, b) > 0)
       end do
-      if (4*count(full) < 3*size(full) - 32) keys = pack(keys, full)
+      counts = real([count(full), size(full)], wp)
+      call sum_all(m%comm, counts)
+      if (4*counts(1) < 3*counts(2) - 32) keys = pack(keys, full)
    end function kept_keys
 
    !> Divide the blocks among the ranks anew by the particles they hold, and move these.

@@ -2,8 +2,7 @@
 
 compare.py same FIRST SECOND                     two runs are identical bit for bit
 compare.py agree FIRST SECOND [TOLERANCE]        two runs agree over the largest of each field
-compare.py mirror FIRST SECOND AXIS TOLERANCE    the second is the mirror image of the first, x -> -x
-                                                 for axis x
+compare.py mirror FIRST SECOND AXIS TOLERANCE    the second is the mirror image of the first
 compare.py check RUN < TABLE                     values; a line is NAME | VALUE | EXPECTED |
                                                  TOLERANCE | SOURCE, see `names_of`
 
