@@ -77,7 +77,8 @@ module xmpm_model
       type(ledger_t) :: ledger
       type(stage_clock_t) :: clock
       procedure(step_i), pointer, nopass :: take_step => null()   !! the chosen scheme
-      procedure(force_i), pointer, nopass :: further_force => null()   !! on particles, from a caller
+      procedure(force_i), pointer, nopass :: further_force => null()   !! on particles, from a
+                                                                       !! caller
       integer(i8) :: step = 0                 !! steps taken
       real(wp) :: time = 0                    !! [time]
       real(wp) :: dt = 0                      !! of the present step [time]

@@ -1,5 +1,5 @@
 !> A manufactured solution for hypoelastic material (Wallstedt and Guilkey 2008, axis-aligned):
-!> u_i = A sin(2 pi X_i) sin(c pi t), c = sqrt(E/rho), held by rollers on all faces of the unit cube.
+!> u_i = A sin(2 pi X_i) sin(c pi t), c = sqrt(E/rho), rollers on all faces of the unit cube.
 !>
 !> The body force that makes it exact is b_i = a_i + (2 pi)^2 u_i (lambda + 2 mu) J / (rho F_ii^2).
 !> Without arguments coarse grids are run; `test_manufactured SHAPE AMPLITUDE N...` prints the rms
@@ -20,16 +20,16 @@ program test_manufactured
    type(comm_t) :: comm
    type(suite_t) :: suite
    character(len=32) :: word
-   integer :: i, n, status
+   integer :: i, n
    real(wp) :: coarse, fine, amplitude
 
    call start_parallel(comm)
    if (command_argument_count() >= 3) then
       call get_command_argument(2, word)
-      read (word, *, iostat=status) amplitude
+      read (word, *) amplitude
       do i = 3, command_argument_count()
          call get_command_argument(i, word)
-         read (word, *, iostat=status) n
+         read (word, *) n
          call get_command_argument(1, word)
          print '(i0,1x,es12.4)', n, error_of(trim(word), amplitude, n)
       end do
@@ -63,11 +63,13 @@ contains
 
       a = cells/real(n, wp)
       call make_model(comm, '*JOB mms|*GRID size = 1/'//to_text(n)//', shape = '//shape// &
-         '|*MATERIAL m|law = elastic, density = 1000, young = 1e7, poisson = 0.3|*BODY b|material = m'// &
+         '|*MATERIAL m|law = elastic, density = 1000, young = 1e7, poisson = 0.3|*BODY '// &
+         'b|material = m'// &
          '|particles = 2, box = 0 0 0 1 1 1|*TIME end = 0.015, cfl = 0.4'// &
          '|*BOUNDARY|plane = x 0, type = roller|*BOUNDARY|plane = x 1, type = roller'// &
          '|*BOUNDARY|plane = y 0, type = roller|*BOUNDARY|plane = y 1, type = roller'// &
-         '|*BOUNDARY|plane = z 0, type = roller|*BOUNDARY|plane = z 1, type = roller', deck, m, error)
+         '|*BOUNDARY|plane = z 0, type = roller|*BOUNDARY|plane = z 1, type = roller', deck, m, &
+         error)
       if (allocated(error)) error stop 2
       call set_amplitude(a)
       m%further_force => force_of_solution

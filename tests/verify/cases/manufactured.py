@@ -1,9 +1,9 @@
 """Order of convergence of the manufactured solution (tests/unit/test_manufactured.f90).
 
 The error is the rms of the displacement's error over all particles, over the amplitude, at three
-quarters of a period. Wanted: order 1.8 for GIMP at an amplitude of 0.2 h and for linear functions at
-1e-6 h. Linear functions at 0.2 h are shown with the order of about 1 that particles near cell faces
-leave them: their gradient jumps there.
+quarters of a period. Wanted: order 1.8 for GIMP at an amplitude of 0.2 h and for linear functions
+at 1e-6 h. Linear functions at 0.2 h are shown with the order of about 1 that particles near cell
+faces leave them: their gradient jumps there.
 """
 
 import math
