@@ -30,7 +30,7 @@ DECK = """
 *BOUNDARY plane = x 0, type = fixed
 *LOAD     face = bar:+x, traction = @pull@ 0 0, curve = step
 *PROBE middle
-  point = 0.5*@length@ h h, quantity = displacement
+  point = 0.5*@length@+0.25*h 0.75*h 0.75*h, quantity = displacement
 *TIME     end = @period@, cfl = 0.5
 *OUTPUT   every = @period@, history = @period@/200
 *END
@@ -64,7 +64,7 @@ def rows(full: bool) -> Iterator[Row]:
             )
             run = run_deck(deck)
             probe = run.table("probe")
-            exact = displacement(0.5 * LENGTH, probe["time"])
+            exact = displacement(0.5 * LENGTH + 0.25 * h, probe["time"])
             u = probe["middle_x"]
             error = np.sqrt(np.mean((u - exact) ** 2) / np.mean(exact**2))
             # A front is spread over a few cells: half the rise is lost over 2 h of the bar.
