@@ -6,7 +6,7 @@ module xmpm_settle
    use xmpm_error, only: error_t, raise, code_numerics
    use xmpm_communicator, only: max_all, sum_all, agree_on_error
    use xmpm_stage_clock, only: start_stage, stop_stage, stage_sort, stage_migration, stage_crack
-   use xmpm_storage, only: count_particles, c_m, c_vol
+   use xmpm_storage, only: count_particles, c_v, c_m, c_vol
    use xmpm_resort, only: resort_chunks
    use xmpm_migration, only: rebin, exchange
    use xmpm_sharing, only: mark_mine
@@ -67,7 +67,7 @@ contains
       call keep_balance(m, shared_anew, error)
       if (allocated(error)) return
       m%split_again = m%split_again .or. worst(6) > 0 .or. (worst(4) > 0 .and. size(m%cracks) > 0)
-      call keep_cracks(m, worst(8) > 0 .or. shared_anew, error)
+      call keep_cracks(m, worst(8) > 0 .or. worst(5) > 0 .or. shared_anew, error)
       if (mod(m%step, wave_interval) == 0) call find_wave_speed(m)
    end subroutine settle
 
@@ -76,30 +76,74 @@ contains
       type(model_t), intent(in) :: m
       real(wp), intent(in) :: worst(8)
       type(error_t), allocatable, intent(out) :: error
-      integer :: c, i
       character(len=:), allocatable :: where_is
 
       if (.not. worst(7) > 0.5_wp .and. worst(2) < 0) return
-      where_is = ''
+      where_is = first_unsound(m)
+      if (len(where_is) > 0) call raise(error, code_numerics, when_it_is(m)// &
+         ': a particle has a volume that is not positive, or a value that is not a number'//where_is)
+      call agree_on_error(m%comm, error)
+      if (allocated(error)) return
+      call raise(error, code_numerics, when_it_is(m)//': the energies are not numbers'//fastest(m))
+      call agree_on_error(m%comm, error)
+   end subroutine check_health
+
+   !> Name the first particle that is unsound, in the chunks or on its way out; '' where none is.
+   pure function first_unsound(m) result(text)
+      type(model_t), intent(in) :: m
+      character(len=:), allocatable :: text
+      integer :: c, i
+
+      text = ''
       do c = 1, m%particles%n_chunks
          do i = 1, m%particles%count(c)
-            if (m%particles%q(i, c_vol, c) > 0 .and. &
-               sum(abs(m%particles%q(i, :, c))) < huge(1.0_wp)) cycle
-            where_is = ': particle '//to_text(m%particles%id(i, c))//' at '// &
-               to_text(m%particles%q(i, 1:3, c))//' has volume '// &
-               to_text(m%particles%q(i, c_vol, c))
-            exit
+            text = unsound(m%particles%id(i, c), m%particles%q(i, :, c))
+            if (len(text) > 0) return
          end do
-         if (len(where_is) > 0) exit
       end do
-      if (len(where_is) > 0 .or. m%comm%size == 1) call raise(error, code_numerics, &
-         'step '//to_text(m%step)//', time '//to_text(m%time)// &
-         ': a particle has a volume that is not positive, or a value that is not a number'// &
-         where_is)
-      call agree_on_error(m%comm, error)
-      if (.not. allocated(error)) call raise(error, code_numerics, 'step '//to_text(m%step)// &
-         ': the energies are not numbers')
-   end subroutine check_health
+      do i = 1, m%outbox%n
+         text = unsound(m%outbox%records(i)%id, m%outbox%records(i)%hot)
+         if (len(text) > 0) return
+      end do
+   end function first_unsound
+
+   !> Name the fastest particle of this rank, '' where it has none.
+   pure function fastest(m) result(text)
+      type(model_t), intent(in) :: m
+      character(len=:), allocatable :: text
+      real(wp) :: speed, v
+      integer :: c, i
+
+      text = ''
+      speed = -1
+      do c = 1, m%particles%n_chunks
+         do i = 1, m%particles%count(c)
+            v = norm2(m%particles%q(i, c_v:c_v + 2, c))
+            if (.not. v > speed) cycle
+            speed = v
+            text = '; particle '//to_text(m%particles%id(i, c))//' at '// &
+               to_text(m%particles%q(i, 1:3, c))//' has the speed '//to_text(v)
+         end do
+      end do
+   end function fastest
+
+   pure function when_it_is(m) result(text)
+      type(model_t), intent(in) :: m
+      character(len=:), allocatable :: text
+
+      text = 'step '//to_text(m%step)//', time '//to_text(m%time)
+   end function when_it_is
+
+   pure function unsound(id, hot) result(text)
+      integer(i8), intent(in) :: id
+      real(wp), intent(in) :: hot(:)
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (hot(c_vol) > 0 .and. sum(abs(hot)) < huge(1.0_wp)) return
+      text = ': particle '//to_text(id)//' at '//to_text(hot(1:3))//' has volume '// &
+         to_text(hot(c_vol))
+   end function unsound
 
    pure function lost_message(m, lost) result(text)
       type(model_t), intent(in) :: m
@@ -136,7 +180,7 @@ contains
    !> ranks (who moves a vertex) must not decide when level sets are renewed.
    subroutine keep_cracks(m, stale, error)
       type(model_t), intent(inout) :: m
-      logical, intent(in) :: stale   !! a vertex or the blocks have changed rank
+      logical, intent(in) :: stale   !! who moves which vertex may have changed
       type(error_t), allocatable, intent(out) :: error
       logical :: due, drifted
       integer :: i

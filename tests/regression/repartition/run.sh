@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sharing the work anew changes nothing but the ranks of the particles; nor do ranks without any.
-# ranks: 2 3
+# ranks: 2 3 7
 # shellcheck source=../case.sh
 source "$(dirname "$0")/../case.sh"
 
