@@ -87,8 +87,8 @@ contains
       integer(i8) :: h
 
       mask = size(map%keys) - 1
-      h = ieor(key, ishft(key, -21))
-      h = ieor(h*3935559_i8, ishft(h, -17))
+      h = iand(ieor(key, ishft(key, -21)), 2_i8**40 - 1)   ! so that the product fits
+      h = ieor(h*3935559_i8, ishft(key, -38))
       h = iand(ieor(h, ishft(h, -31)), int(mask, i8))
       place = int(h)
       do while (map%keys(place) /= empty .and. map%keys(place) /= key)
