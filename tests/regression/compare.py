@@ -1,9 +1,9 @@
 """Compares the result files of runs with each other or with values of known source.
 
 compare.py same FIRST SECOND                     two runs are identical bit for bit
-compare.py agree FIRST SECOND [TOLERANCE]        two runs agree over the largest of each field
+compare.py agree FIRST SECOND TOLERANCE [SOURCE]  two runs agree over the largest of each field
 compare.py mirror FIRST SECOND AXIS TOLERANCE    the second is the mirror image of the first
-compare.py check RUN < TABLE                     values; a line is NAME | VALUE | EXPECTED |
+compare.py check RUN [OTHER] < TABLE             values; a line is NAME | VALUE | EXPECTED |
                                                  TOLERANCE | SOURCE, see `names_of`
 
 A run is FOLDER/NAME, NAME being the deck's job. Every row is printed; exit 1 if one fails.
@@ -171,9 +171,11 @@ def names_of(run: str) -> dict:
     return names
 
 
-def check(run: str, rows: str) -> bool:
-    """Show and judge the values of a table of checks."""
+def check(run: str, rows: str, other: str | None) -> bool:
+    """Show and judge the values of a table; names of another run begin with `other_`."""
     names = names_of(run)
+    if other:
+        names |= {f"other_{name}": value for name, value in names_of(other).items()}
     good, count = True, 0
     for row in rows.splitlines():
         if not row.strip():
@@ -192,12 +194,12 @@ def main(words: list[str]) -> int:
     if command == "same":
         good = agree(rest[0], rest[1], 0.0, 0.0, "the same ranks: bit for bit")
     elif command == "agree":
-        tolerance = float(rest[2]) if len(rest) > 2 else 1e-10
-        good = agree(rest[0], rest[1], tolerance, SINGLE, "the same run on other ranks")
+        source = rest[3] if len(rest) > 3 else "the same run on other ranks"
+        good = agree(rest[0], rest[1], float(rest[2]), SINGLE, source)
     elif command == "mirror":
         good = mirror(rest[0], rest[1], "xyz".index(rest[2]), float(rest[3]))
     else:
-        good = check(rest[0], sys.stdin.read())
+        good = check(rest[0], sys.stdin.read(), rest[1] if len(rest) > 1 else None)
     return 0 if good else 1
 
 
