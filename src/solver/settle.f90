@@ -81,7 +81,8 @@ contains
       if (.not. worst(7) > 0.5_wp .and. worst(2) < 0) return
       where_is = first_unsound(m)
       if (len(where_is) > 0) call raise(error, code_numerics, when_it_is(m)// &
-         ': a particle has a volume that is not positive, or a value that is not a number'//where_is)
+         ': a particle has a volume that is not positive, or a value that is not a number'// &
+         where_is)
       call agree_on_error(m%comm, error)
       if (allocated(error)) return
       call raise(error, code_numerics, when_it_is(m)//': the energies are not numbers'//fastest(m))
