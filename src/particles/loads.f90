@@ -1,7 +1,7 @@
 !> Tractions and pressures on the surface layer of a body, brought to the nodes at the true face.
 module xmpm_loads
    use xmpm_kinds, only: wp, i8
-   use xmpm_lattice, only: stencil_offsets, tile_base, bins_per_block, bin_corner
+   use xmpm_lattice, only: stencil_offsets, tile_base, bins_per_block, bin_corner, gimp_shape
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, lanes, bin_of_chunk
    use xmpm_frame, only: frame_t
@@ -189,7 +189,8 @@ contains
       frame%half = point
    end function face_frame
 
-   !> Force on each lane, and the lanes moved out to the face (but not out of the bin).
+   !> Force on each lane, and the lanes moved out to the face, but not out of the cell: a node
+   !> beyond it, to which GIMP gives next to no mass, must not take a share of the force.
    subroutine force_of_lanes(load, p, grid, c, factor, force, q)
       type(load_t), intent(in) :: load
       type(particles_t), intent(in) :: p
@@ -197,7 +198,7 @@ contains
       integer, intent(in) :: c
       real(wp), intent(in) :: factor
       real(wp), intent(out) :: force(lanes, 3), q(lanes, 14)
-      real(wp) :: area(3), corner(3), size
+      real(wp) :: area(3), corner(3), low(3), high(3), size
       integer :: i, at
 
       corner = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c))
@@ -210,8 +211,17 @@ contains
          if (at == 0) cycle
          area = load%table%area(:, at)
          force(i, :) = factor*(load%traction*norm2(area) - load%pressure*area)
+         low = corner
+         high = corner + size
+         if (grid%lattice%shape == gimp_shape) then
+            where (q(i, 1:3) < corner + 0.5_wp*size)
+               high = corner + 0.5_wp*size
+            elsewhere
+               low = corner + 0.5_wp*size
+            end where
+         end if
          q(i, 1:3) = q(i, 1:3) + load%depth*area/max(norm2(area), tiny(1.0_wp))
-         q(i, 1:3) = max(corner, min(corner + size, q(i, 1:3)))
+         q(i, 1:3) = max(low, min(high, q(i, 1:3)))
       end do
    end subroutine force_of_lanes
 

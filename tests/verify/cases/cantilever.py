@@ -1,10 +1,9 @@
 """Cantilever in free vibration: its first frequency against Timoshenko's beam.
 
-The beam is held at x = 0, and its weight is put on suddenly, so that it swings about its bent place;
-two periods of its tip are followed.
-The reference is the frequency of Timoshenko's beam with the shear
-factor 5/6, from the transfer matrix of the beam equations at a circular frequency w,
-d/dx (deflection, slope, moment, shear), whose lower right quarter is singular for a beam that is
+The beam is held at x = 0, and its weight is put on suddenly, so that it swings about its bent
+place; two periods of its tip are followed. The reference is the frequency of Timoshenko's beam
+with the shear factor 5/6, from the transfer matrix of the beam equations at a circular frequency
+w, d/dx (deflection, slope, moment, shear), whose lower right quarter is singular for a beam that is
 clamped at one end and free at the other (S. Timoshenko, Phil. Mag. 41, 1921, 744-746). What it
 leaves out, a three-dimensional clamp and lateral contraction, is below 1 % for this beam.
 """
@@ -119,7 +118,7 @@ def rows(full: bool) -> Iterator[Row]:
             run = run_deck(deck)
             probe = run.table("probe")
             found = frequency(probe["time"], probe["tip_z"])
-            # Few cells are too stiff: 2.3 % (linear) and 2.7 % (GIMP) with 2 of them over the depth,
-            # 1 % with 4 (recorded on 2026-11-22), so of first order.
+            # Few cells are too stiff: 2.3 % (linear) and 2.7 % (GIMP) with 2 of them over the
+            # depth, 1 % with 4 (recorded on 2026-11-22), so of first order.
             limit = 0.06 * h / DEPTH
             yield Row.of("cantilever", shape, h, run, "frequency [kHz]", found, exact, limit)

@@ -1,9 +1,9 @@
 """Spinning bar: centrifugal stress at its middle, and its angular momentum.
 
-A bar with a Poisson ratio of 0 turns about the axis through its middle. It starts unstretched, so its
-stress swings about the exact sigma(x) = rho w^2 (L^2/4 - x^2)/2, which for small strains is the
-mean over the swing; the mean over whole periods 2 L/c is compared. Drift of the angular momentum is
-that of the particles' update with a lumped mass; it is reported.
+A bar with a Poisson ratio of 0 turns about the axis through its middle. It starts unstretched, so
+its stress swings about the exact sigma(x) = rho w^2 (L^2/4 - x^2)/2; the mean over two whole
+periods 2 L/c is compared. The angular momentum drifts since particles take the change of nodes with
+a lumped mass; the drift is reported.
 """
 
 from collections.abc import Iterator
@@ -61,9 +61,9 @@ def rows(full: bool) -> Iterator[Row]:
             c, s = np.cos(OMEGA * probe["time"]), np.sin(OMEGA * probe["time"])
             along = c * c * probe["middle_xx"] + s * s * probe["middle_yy"]
             along += 2.0 * c * s * probe["middle_xy"]
-            # The gradient at free sides is off by a part of the spin, so the error is of first order in
-            # h over the width: 12.6 and 6.4 % (linear), 7.0 and 3.1 % (GIMP) with 2 and 4 cells over
-            # it (recorded on 2026-11-22).
+            # The gradient at free sides is off by a part of the spin, so the error is of first
+            # order in h over the width: 12.6 and 6.4 % (linear), 7.0 and 3.1 % (GIMP) with 2 and
+            # 4 cells over it (recorded on 2026-11-22).
             limit = 0.28 * h / WIDTH
             yield Row.of("spin", shape, h, run, "mean stress [MPa]", along.mean(), exact, limit)
             turns = run.table("energy")["angular_z"]
