@@ -2,7 +2,7 @@
 # Shape functions, schemes, transfers and front rules run on a cracked plate, each with the error of
 # its energy balance (mean of the last tenth). FLIP with MUSL or USF keeps it within 3 %; USL and
 # XPIC lose energy, which has no column of its own: within the default limit of a run, 10 %.
-# ranks: 2
+# ranks: 1
 # shellcheck source=../case.sh
 source "$(dirname "$0")/../case.sh"
 
