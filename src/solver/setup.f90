@@ -5,8 +5,8 @@ module xmpm_setup
    use xmpm_error, only: error_t
    use xmpm_communicator, only: agree_on_error
    use xmpm_stage_clock, only: start_clock
-   use xmpm_deck, only: deck_t, block_t, find_block, has, real_of, reals_of, integer_of, text_of, &
-      problems
+   use xmpm_deck, only: deck_t, block_t, count_blocks, find_block, warn, has, real_of, &
+      reals_of, integer_of, text_of, problems
    use xmpm_lattice, only: linear_shape, gimp_shape
    use xmpm_grid, only: make_grid
    use xmpm_kernels, only: choose_kernels
@@ -66,7 +66,7 @@ contains
    !> Grid, shape function, scheme and options.
    subroutine set_up_method(m, deck)
       type(model_t), intent(inout) :: m
-      type(deck_t), intent(in) :: deck
+      type(deck_t), intent(inout) :: deck
       type(block_t) :: grid, time, damping, health, partition
       integer :: shape
 
@@ -86,6 +86,11 @@ contains
       case default
          m%take_step => step_musl
       end select
+      if (shape == gimp_shape .and. lower(text_of(time, 'scheme')) /= 'musl' .and. &
+          count_blocks(deck, 'crack') > 0) then
+         call warn(deck, time, 'scheme', 'with GIMP and cracks only musl is sound: usf and usl '// &
+            'open cracks far too much')
+      end if
       associate (o => m%options)
          o%end_time = real_of(time, 'end')
          o%cfl = real_of(time, 'cfl')
