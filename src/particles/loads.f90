@@ -216,7 +216,7 @@ contains
          if (grid%lattice%shape == gimp_shape) then
             where (q(i, 1:3) < corner + 0.5_wp*size)
                high = corner + 0.5_wp*size
-            elsewhere
+            else where
                low = corner + 0.5_wp*size
             end where
          end if
