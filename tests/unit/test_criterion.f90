@@ -44,8 +44,7 @@ contains
       call check_close(suite, 'closed faces count as K_I = 0', hoop_angle(-5.0_wp, 1.0_wp), &
          -steepest_kink, tight, 0.0_wp)
       call check_close(suite, 'nothing gives no angle', hoop_angle(0.0_wp, 0.0_wp), 0.0_wp, &
-         0.0_wp, &
-         0.0_wp)
+         0.0_wp, 0.0_wp)
       call hoop%judge([-5.0_wp, 0.0_wp, 0.0_wp], kink, twist, k)
       call check_close(suite, 'and closed faces give no K*', k, 0.0_wp, 0.0_wp, 0.0_wp)
    end subroutine hoop_limits
@@ -123,7 +122,6 @@ contains
       do i = 1, 50
          t = real(i, wp)
          modes = [abs(sin(1.7_wp*t)), sin(2.3_wp*t + 1), sin(0.9_wp*t + 2)]
-            sin(0.9_wp*real(i, wp) + 2)]
          call law%judge(modes, kink, twist, k)
          do j = -70, 70
             t = real(j, wp)*pi/180
