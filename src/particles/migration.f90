@@ -33,15 +33,17 @@ contains
       type(outbox_t), intent(inout) :: outbox
       logical, intent(inout) :: near_moved      !! set where a particle near a crack changed its bin
       type(record_t) :: record
-      integer :: i, c, lane, b, bin(3), to
+      integer :: i, c, lane, b, to
 
       do i = 1, size(movers)
          c = movers(i)
-         do lane = p%count(c), 1, -1
-            bin = bin_of(grid%lattice, p%q(lane, c_x:c_x + 2, c))
-            b = local_block(grid%blocks, block_of(bin))
-            to = bins_per_block*(b - 1) + local_bin(bin)
-            if (b > 0 .and. to == p%bin(c)) cycle
+         lane = p%count(c)
+         do while (lane > 0)
+            call find_bin(p, grid, lane, c, b, to)
+            if (to == p%bin(c)) then
+               lane = lane - 1
+               cycle
+            end if
             if (p%attached(c) > 0) near_moved = .true.
             if (b > 0) then
                call move_lane(p, grid%lattice, grid%blocks, lane, c, to)
@@ -50,9 +52,27 @@ contains
                call put_into_outbox(outbox, record)
                call remove_lane(p, grid%lattice, grid%blocks, lane, c)
             end if
+            lane = min(lane, p%count(c))   ! another particle of the bin may have taken the lane
          end do
       end do
    end subroutine rebin
+
+   !> Where a particle is now: block of this rank and bin, both 0 where the block is not its own.
+   pure subroutine find_bin(p, grid, lane, chunk, b, to)
+      type(particles_t), intent(in) :: p
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: lane, chunk
+      integer, intent(out) :: b    !! block
+      integer, intent(out) :: to   !! 64 (block - 1) + bin of the block
+      integer :: bin(3), place(3)
+
+      bin = bin_of(grid%lattice, p%q(lane, c_x:c_x + 2, chunk))
+      place = block_of(bin)
+      b = 1 + (p%bin(chunk) - 1)/bins_per_block
+      if (any(place /= grid%blocks%place(:, b))) b = local_block(grid%blocks, place)
+      to = 0
+      if (b > 0) to = bins_per_block*(b - 1) + local_bin(bin)
+   end subroutine find_bin
 
    !> Add a particle to the outbox.
    subroutine put_into_outbox(outbox, record)

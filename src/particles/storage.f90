@@ -165,20 +165,48 @@ contains
       if (p%attached(chunk) > 0) record%near = p%near(lane, :, p%attached(chunk))
    end subroutine read_record
 
-   !> Take a particle out: the last of the chunk fills its lane; an empty chunk becomes free.
+   !> Take a particle out. The last of the bin's emptiest chunk fills its lane, so that a bin never
+   !> holds more chunks than it must; an empty chunk becomes free.
    subroutine remove_lane(p, lattice, blocks, lane, chunk)
       type(particles_t), intent(inout) :: p
       type(lattice_t), intent(in) :: lattice
       type(blocks_t), intent(in) :: blocks
       integer, intent(in) :: lane, chunk
-      integer :: last
+      integer :: last, giver
 
-      last = p%count(chunk)
-      if (lane /= last) call copy_lane(p, last, chunk, lane, chunk)
-      call blank_lane(p, lattice, blocks, last, chunk)
-      p%count(chunk) = last - 1
-      if (last == 1) call release_chunk(p, chunk)
+      giver = emptiest_chunk(p, chunk)
+      last = p%count(giver)
+      if (giver /= chunk .or. last /= lane) then
+         if (p%attached(giver) > 0 .and. p%attached(chunk) == 0) call attach(p, chunk)
+         call copy_lane(p, last, giver, lane, chunk)
+      end if
+      call blank_lane(p, lattice, blocks, last, giver)
+      p%count(giver) = last - 1
+      if (last == 1) call release_chunk(p, giver)
    end subroutine remove_lane
+
+   !> Of the chunks of one bin and body the one with the fewest particles, the last of several.
+   pure function emptiest_chunk(p, chunk) result(found)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: chunk   !! one of them
+      integer :: found, c
+
+      found = chunk
+      c = first_of_bin(p, p%bin(chunk))
+      do while (c > 0)
+         if (p%body(c) == p%body(chunk) .and. p%count(c) <= p%count(found)) found = c
+         c = p%next(c)
+      end do
+   end function emptiest_chunk
+
+   !> First chunk of a bin, 0 where it has none.
+   pure function first_of_bin(p, bin) result(c)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: bin   !! 64 (block - 1) + bin of the block
+      integer :: c
+
+      c = p%head(1 + mod(bin - 1, bins_per_block), 1 + (bin - 1)/bins_per_block)
+   end function first_of_bin
 
    !> Move a particle to another bin of this rank.
    subroutine move_lane(p, lattice, blocks, lane, chunk, bin)
@@ -229,6 +257,25 @@ contains
       if (p%attached(chunk) > 0) p%near(lane, :, p%attached(chunk)) = 0
    end subroutine blank_lane
 
+   !> All lanes of a chunk empty.
+   subroutine blank_chunk(p, lattice, blocks, chunk)
+      type(particles_t), intent(inout) :: p
+      type(lattice_t), intent(in) :: lattice
+      type(blocks_t), intent(in) :: blocks
+      integer, intent(in) :: chunk
+      real(wp) :: middle(3)
+      integer :: i
+
+      middle = bin_corner(lattice, bin_of_chunk(p, blocks, chunk)) + 0.5_wp*lattice%size
+      p%q(:, :, chunk) = 0
+      do i = 1, 3
+         p%q(:, c_x + i - 1, chunk) = middle(i)
+      end do
+      p%x0(:, :, chunk) = 0
+      p%id(:, chunk) = 0
+      p%sets(:, chunk) = 0
+   end subroutine blank_chunk
+
    !> A chunk of the bin with a free lane for the body; made if there is none.
    function chunk_with_room(p, lattice, blocks, bin, body) result(c)
       type(particles_t), intent(inout) :: p
@@ -250,10 +297,7 @@ contains
       p%bin(c) = bin
       p%body(c) = body
       p%next(c) = 0
-      do k = 1, lanes
-         call blank_lane(p, lattice, blocks, k, c)
-      end do
-      k = 1 + mod(bin - 1, bins_per_block)
+      call blank_chunk(p, lattice, blocks, c)
       if (last == 0) p%head(k, b) = c
       if (last > 0) p%next(last) = c
    end function chunk_with_room

@@ -99,6 +99,7 @@ contains
       call check(suite, sentence//': values stay with their particle', values_hold(m))
       call check(suite, sentence//': every chunk is in its bin''s chain once', chains_hold(m))
       call check(suite, sentence//': empty lanes are empty', blanks_hold(m))
+      call check(suite, sentence//': a bin has no more chunks than it needs', few_chunks(m))
    end subroutine check_storage
 
    pure function values_hold(m) result(hold)
@@ -152,6 +153,22 @@ contains
       end associate
       hold = hold .and. all(seen == 1)
    end function chains_hold
+
+   !> Whether of all chunks of a bin and body at most one has a free lane.
+   pure function few_chunks(m) result(hold)
+      type(model_t), intent(in) :: m
+      logical :: hold
+      integer :: open_chunks(size(m%particles%head), 2), c
+
+      open_chunks = 0
+      associate (p => m%particles)
+         do c = 1, p%n_chunks
+            if (p%count(c) == 0 .or. p%count(c) == lanes) cycle
+            open_chunks(p%bin(c), p%body(c)) = open_chunks(p%bin(c), p%body(c)) + 1
+         end do
+      end associate
+      hold = all(open_chunks <= 1)
+   end function few_chunks
 
    pure function blanks_hold(m) result(hold)
       type(model_t), intent(in) :: m
