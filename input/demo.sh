@@ -18,8 +18,7 @@ say "running input/plate-1.inp on 2 ranks"
 mpirun -n 2 "$program" -o "$results" <"$xmpm_root/input/plate-1.inp"
 
 say 'drawing the displacement jump across the crack'
-"$XMPM_PYTHON" "$xmpm_root/postproc/jump_picture.py" "$results/plate-1_particles.vtkhdf" \
-   "$results/plate-1_crack.vtkhdf" -o "$results/plate-1_jump.png"
+"$XMPM_VENV/bin/xmpm-post" jump "$results/plate-1" -o "$results/plate-1_jump.png"
 
 say 'result files:'
 find "$results" -maxdepth 1 -type f | sort
