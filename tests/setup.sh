@@ -104,11 +104,15 @@ ensure_packages() {
 
 # --- Python ------------------------------------------------------------------------------------
 
-# What .venv was made from; a change of any of it makes it anew.
+# What .venv was made from; a change of it makes it anew.
 python_stamp() {
-   local project
    echo "$XMPM_VENV"
    cat "$xmpm_root/requirements.txt"
+}
+
+# What is installed of the project itself; a change of it installs these packages again.
+own_stamp() {
+   local project
    for project in preproc postproc; do
       if [ -f "$xmpm_root/$project/pyproject.toml" ]; then
          echo "$xmpm_root/$project"
@@ -118,30 +122,44 @@ python_stamp() {
 }
 
 ensure_python() {
-   local stamp=$XMPM_VENV/.stamp log=$xmpm_root/build/pip.log python project own=()
+   local stamp=$XMPM_VENV/.stamp log=$xmpm_root/build/pip.log python
    if [ -f "$stamp" ] && "$XMPM_PYTHON" -c '' 2>/dev/null &&
       [ "$(python_stamp)" = "$(cat "$stamp")" ]; then
       return 0
    fi
    python=$(find_python)
    say "installing Python packages into $XMPM_VENV (about a minute)"
-   for project in preproc postproc; do
-      if [ -f "$xmpm_root/$project/pyproject.toml" ]; then
-         own+=(--editable "$xmpm_root/$project")
-      fi
-   done
    rm -f "$stamp"
    if ! { "$python" -m venv --clear "$XMPM_VENV" &&
       "$XMPM_PYTHON" -m pip install --disable-pip-version-check \
-         -r "$xmpm_root/requirements.txt" &&
-      { [ "${#own[@]}" -eq 0 ] || "$XMPM_PYTHON" -m pip install \
-         --disable-pip-version-check --no-deps --no-build-isolation "${own[@]}"; }; } \
-      >"$log" 2>&1; then
+         -r "$xmpm_root/requirements.txt"; } >"$log" 2>&1; then
       tail -n 20 "$log" >&2
       fail "could not install the packages of requirements.txt into $XMPM_VENV" \
          "(the whole log: $log)"
    fi
    python_stamp >"$stamp"
+}
+
+# The commands xmpm-prep and xmpm-post, from the sources of this folder.
+ensure_own() {
+   local stamp=$XMPM_VENV/.own log=$xmpm_root/build/pip-own.log project own=()
+   if [ -f "$stamp" ] && [ "$(own_stamp)" = "$(cat "$stamp")" ]; then
+      return 0
+   fi
+   for project in preproc postproc; do
+      if [ -f "$xmpm_root/$project/pyproject.toml" ]; then
+         own+=(--editable "$xmpm_root/$project")
+      fi
+   done
+   if [ "${#own[@]}" -gt 0 ]; then
+      say 'installing the commands of preproc and postproc'
+      if ! "$XMPM_PYTHON" -m pip install --disable-pip-version-check --no-deps \
+         --no-build-isolation "${own[@]}" >"$log" 2>&1; then
+         tail -n 20 "$log" >&2
+         fail "could not install ${own[*]} (the whole log: $log)"
+      fi
+   fi
+   own_stamp >"$stamp"
 }
 
 # --- Build -------------------------------------------------------------------------------------
@@ -178,7 +196,7 @@ ensure_all() {
          'Copy the project to a folder of yours, or change the owner of this one.'
    (
       if has_command flock; then flock 9; fi
-      ensure_packages && ensure_python && ensure_build "$@"
+      ensure_packages && ensure_python && ensure_own && ensure_build "$@"
    ) 9>"$xmpm_root/build/.lock" || exit 1
 }
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import LogFormatter
 
 from xmpm_post import style
 from xmpm_post.errors import PostError
@@ -40,8 +40,9 @@ def draw_panel(panel, quantity: str, methods: list[Table]) -> None:
         if np.isfinite(limits).any():
             panel.plot(rows["cpu_s"], limits, color=colour, ls=":", lw=0.8, marker="_")
     panel.set(xscale="log", yscale="log", title=quantity, xlabel="CPU time [s]", ylabel="error")
-    panel.yaxis.set_minor_formatter(NullFormatter())
-    panel.xaxis.set_minor_formatter(NullFormatter())
+    for axis in (panel.xaxis, panel.yaxis):  # 0.01, and 0.02 where that is the only one
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(1, 0.4)))
     panel.margins(0.15)
     panel.legend()
 
