@@ -5,8 +5,8 @@ module xmpm_momentum
    implicit none
    private
 
-   public :: force_out_of_balance, advance_momentum, blend_change, velocity_from_second, &
-      nodal_work_t, change_from_velocity
+   public :: force_out_of_balance, impulse_energy, advance_momentum, blend_change, &
+      velocity_from_second, nodal_work_t, change_from_velocity
 
    !> Work that nodes did or took in a step, counted once over all ranks [energy].
    type :: nodal_work_t
@@ -63,6 +63,21 @@ contains
          end do
       end do
    end function force_out_of_balance
+
+   !> Sum of m |change|^2 over the rows that this rank counts [energy]; fields 5:7 hold the change.
+   pure function impulse_energy(grid) result(total)
+      type(grid_t), intent(in) :: grid
+      real(wp) :: total
+      integer :: b, i, first, last
+
+      total = 0
+      do b = 1, grid%blocks%n_node_blocks + 1
+         call active_rows(grid, b, first, last)
+         do i = first, last
+            if (grid%mine(i)) total = total + grid%node(1, i)*sum(grid%node(5:7, i)**2)
+         end do
+      end do
+   end function impulse_energy
 
    !> Change that gives the particles the share `eta` of the nodal velocity: fields 5:7 become
    !> (1 - eta) change + eta target, where the target is v for PIC and 2 v - S+ S v for XPIC(2) in

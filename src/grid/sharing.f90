@@ -141,7 +141,8 @@ contains
       sharing%first(size(plain%ranks) + 1) = n + 1
    end subroutine add_split_rows
 
-   !> Mark the rows that this rank counts in sums: those not shared with a lower rank.
+   !> Mark the rows that this rank counts in sums: those not shared with a lower rank. The rows of a
+   !> split node go with its ordinary one.
    subroutine mark_mine(grid, sharing, rank)
       type(grid_t), intent(inout) :: grid
       type(sharing_t), intent(in) :: sharing
@@ -158,6 +159,9 @@ contains
          do i = sharing%first(k), sharing%first(k + 1) - 1
             grid%mine(sharing%rows(i)) = .false.
          end do
+      end do
+      do i = grid%n_plain + 1, grid%n_rows
+         grid%mine(i) = grid%mine(grid%parent(i - grid%n_plain))
       end do
    end subroutine mark_mine
 end module xmpm_sharing

@@ -13,7 +13,7 @@ module xmpm_loads
    implicit none
    private
 
-   public :: load_t, apply_load, work_of_load, rows_of_bin, push_chunk
+   public :: load_t, apply_load, power_of_load, rows_of_bin, push_chunk, gather_chunk
 
    real(wp), parameter :: point = 1e-6_wp   !! width that makes GIMP a point at the face [cells]
 
@@ -81,6 +81,35 @@ contains
       end if
    end subroutine push_chunk
 
+   !> Interpolate three fields of the rows to the particles of a chunk.
+   subroutine gather_chunk(p, c, half, kernels, sided, offsets, grid, field, value)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: c                !! chunk
+      real(wp), intent(in) :: half            !! half a particle's width [cells]
+      type(kernels_t), intent(in) :: kernels
+      type(sided_t), intent(in) :: sided
+      integer, intent(in) :: offsets(:)       !! tile nodes of the stencil, less the first
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: field            !! first of the three
+      real(wp), intent(out) :: value(lanes, 3)
+      real(wp) :: tile(8, tile_nodes)
+      integer :: s, i, rows(size(offsets))
+      type(frame_t) :: frame
+
+      frame = face_frame(p, grid, c)
+      frame%half = half
+      s = sided_bin(sided, p%bin(c))
+      if (s > 0) then
+         call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, field, value)
+         return
+      end if
+      rows = rows_of_bin(grid, p%bin(c), offsets)
+      do i = 1, size(rows)
+         tile(:, 1 + offsets(i)) = grid%node(:, rows(i))
+      end do
+      call kernels%gather(p%q(:, :, c), frame, tile, field, value)
+   end subroutine gather_chunk
+
    !> Add forces of a chunk of an ordinary bin, with the lanes where `q` has them.
    subroutine push_plain(p, c, kernels, q, offsets, frame, force, grid)
       type(particles_t), intent(in) :: p
@@ -121,21 +150,21 @@ contains
       end do
    end subroutine push_load
 
-   !> Add the load's work in a step: force times mean velocity; call after the nodal update, when
-   !> fields 2:4 hold the new velocity and 5:7 its change.
-   subroutine work_of_load(load, p, kernels, sided, time, dt, grid)
-      type(load_t), intent(inout) :: load
+   !> Power of the load with the velocity that three fields of the rows hold.
+   function power_of_load(load, p, kernels, sided, time, grid, field) result(power)
+      type(load_t), intent(in) :: load
       type(particles_t), intent(in) :: p
       type(kernels_t), intent(in) :: kernels
       type(sided_t), intent(in) :: sided
-      real(wp), intent(in) :: time, dt        !! [time]
+      real(wp), intent(in) :: time            !! [time]
       type(grid_t), intent(in) :: grid
-      real(wp) :: force(lanes, 3), q(lanes, 14), tile(8, tile_nodes), new(lanes, 3), &
-         change(lanes, 3)
-      real(wp) :: factor
+      integer, intent(in) :: field            !! first of the three
+      real(wp) :: power                       !! of this rank [energy/time]
+      real(wp) :: force(lanes, 3), q(lanes, 14), tile(8, tile_nodes), v(lanes, 3), factor
       integer :: c, s, i, rows(grid%lattice%reach**3), offsets(grid%lattice%reach**3)
       type(frame_t) :: frame
 
+      power = 0
       factor = curve_value(load%curve, time)
       if (.not. abs(factor) > 0) return
       offsets = stencil_offsets(grid%lattice)
@@ -145,19 +174,17 @@ contains
          frame = face_frame(p, grid, c)
          s = sided_bin(sided, p%bin(c))
          if (s > 0) then
-            call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, 2, new)
-            call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, 5, change)
+            call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, field, v)
          else
             rows = rows_of_bin(grid, p%bin(c), offsets)
             do i = 1, size(rows)
                tile(:, 1 + offsets(i)) = grid%node(:, rows(i))
             end do
-            call kernels%gather(q, frame, tile, 2, new)
-            call kernels%gather(q, frame, tile, 5, change)
+            call kernels%gather(q, frame, tile, field, v)
          end if
-         load%work = load%work + dt*sum(force*(new - 0.5_wp*change))
+         power = power + sum(force*v)
       end do
-   end subroutine work_of_load
+   end function power_of_load
 
    pure function is_loaded(load, p, c) result(holds)
       type(load_t), intent(in) :: load

@@ -13,7 +13,7 @@ module xmpm_balance
 
    public :: balance_t, balance_names, balance_units, balance_cells, momenta, balance_columns
 
-   integer, parameter :: balance_columns = 18   !! values of a row
+   integer, parameter :: balance_columns = 19   !! values of a row
 
    !> Energies of all ranks at one time.
    type :: balance_t
@@ -24,6 +24,7 @@ module xmpm_balance
       real(wp) :: strain = 0           !! stress work [energy]
       real(wp) :: external = 0         !! work of loads, body forces and conditions [energy]
       real(wp) :: damping = 0          !! lost to damping [energy]
+      real(wp) :: transfer = 0         !! lost in transfers: PIC, XPIC, USL [energy]
       real(wp) :: plastic = 0          !! plastic work [energy]
       real(wp) :: contact = 0          !! lost to friction of crack faces [energy]
       real(wp) :: fracture = 0         !! taken by crack growth [energy]
@@ -40,8 +41,9 @@ contains
       character(len=14) :: names(balance_columns)
 
       names = [character(len=14) :: 'time', 'step', 'dt', 'kinetic', 'strain', 'external', &
-         'damping', 'plastic', 'contact', 'fracture', 'balance_error', 'relative_error', &
-         'momentum_x', 'momentum_y', 'momentum_z', 'angular_x', 'angular_y', 'angular_z']
+         'damping', 'transfer', 'plastic', 'contact', 'fracture', 'balance_error', &
+         'relative_error', 'momentum_x', 'momentum_y', 'momentum_z', 'angular_x', 'angular_y', &
+         'angular_z']
    end function balance_names
 
    !> Units of the columns.
@@ -52,21 +54,21 @@ contains
       units(1) = unit_text(deck, 'time')
       units(2) = '1'
       units(3) = unit_text(deck, 'time')
-      units(4:11) = unit_text(deck, 'energy')
-      units(12) = '1'
-      units(13:15) = unit_text(deck, 'momentum')
-      units(16:18) = unit_text(deck, 'angular momentum')
+      units(4:12) = unit_text(deck, 'energy')
+      units(13) = '1'
+      units(14:16) = unit_text(deck, 'momentum')
+      units(17:19) = unit_text(deck, 'angular momentum')
    end function balance_units
 
    !> The row in the order of the columns.
    pure function balance_cells(b) result(cells)
       type(balance_t), intent(in) :: b   !! of all ranks
       type(string_t) :: cells(balance_columns)
-      real(wp) :: values(16)
+      real(wp) :: values(17)
       integer :: i
 
-      values = [b%dt, b%kinetic, b%strain, b%external, b%damping, b%plastic, b%contact, &
-         b%fracture, b%error, b%relative_error, b%linear, b%angular]
+      values = [b%dt, b%kinetic, b%strain, b%external, b%damping, b%transfer, b%plastic, &
+         b%contact, b%fracture, b%error, b%relative_error, b%linear, b%angular]
       cells(1) = cell(b%time)
       cells(2) = cell(b%step)
       do i = 1, size(values)

@@ -28,10 +28,12 @@ contains
       m%ledger%strain = 0
       m%ledger%external = 0
       m%ledger%damping = 0
+      m%ledger%transfer = 0
       m%ledger%largest = 0
       m%ledger%time = m%time
       m%nodal_work%external = 0
       m%nodal_work%damping = 0
+      m%transfer_loss = 0
       m%loads%work = 0
       m%boundaries%work = 0
       call sum_all(m%comm, kinetic)
@@ -47,6 +49,7 @@ contains
          l%kinetic = [l%kinetic(2), m%tally%kinetic]
          l%strain = [l%strain(2), l%strain(2) + m%tally%work]
          l%damping = [l%damping(2), m%nodal_work%damping]
+         l%transfer = [l%transfer(2), m%transfer_loss]
          l%external = [l%external(2), m%nodal_work%external + sum(m%loads%work) &
             + sum(m%boundaries%work)]
       end associate
@@ -58,10 +61,11 @@ contains
       type(model_t), intent(inout) :: m
       logical, intent(in) :: with_momenta   !! whether they are wanted
       type(balance_t), intent(out) :: balance
-      real(wp) :: sums(4)
+      real(wp) :: sums(5)
 
       associate (l => m%ledger)
-         sums = [0.5_wp*sum(l%kinetic), l%strain(1), 0.5_wp*sum(l%external), 0.5_wp*sum(l%damping)]
+         sums = [0.5_wp*sum(l%kinetic), l%strain(1), 0.5_wp*sum(l%external), &
+            0.5_wp*sum(l%damping), 0.5_wp*sum(l%transfer)]
          call sum_all(m%comm, sums)
          balance%time = l%time
          balance%step = max(0_i8, m%step - 1)
@@ -70,7 +74,8 @@ contains
          balance%strain = sums(2)
          balance%external = sums(3)
          balance%damping = sums(4)
-         balance%error = sums(1) - l%kinetic_start + sums(2) + sums(4) - sums(3)
+         balance%transfer = sums(5)
+         balance%error = sums(1) - l%kinetic_start + sums(2) + sums(4) + sums(5) - sums(3)
          l%largest = max(l%largest, sums(1), abs(sums(2)), abs(sums(3)), l%kinetic_start)
          balance%relative_error = 0
          if (l%largest > 0) balance%relative_error = balance%error/l%largest

@@ -14,6 +14,7 @@ module xmpm_model
    use xmpm_transfer, only: tally_t, bodies_t
    use xmpm_migration, only: outbox_t
    use xmpm_loads, only: load_t
+   use xmpm_transfer_loss, only: flip_step_t
    use xmpm_curves, only: curve_t
    use xmpm_crack, only: crack_t
    implicit none
@@ -37,6 +38,7 @@ module xmpm_model
       real(wp) :: pic = 0                    !! PIC fraction per time [1/time]
       real(wp) :: damped_until = huge(1.0_wp)!! end of the damping [time]
       logical :: xpic = .false.              !! XPIC(2) transfer
+      logical :: strain_by_nodes = .false.   !! nodal velocities themselves strain (USL)
       real(wp) :: energy_limit = 0.1_wp      !! error of the balance at which a run is given up
       real(wp) :: smallest_step = 1e-3_wp    !! part of the first step at which a run is given up
       real(wp) :: imbalance = 1.2_wp         !! threshold of repartition
@@ -51,6 +53,7 @@ module xmpm_model
       real(wp) :: external(2) = 0              !! work of loads, conditions and body forces,
                                                !! likewise
       real(wp) :: damping(2) = 0               !! lost to nodal damping, likewise
+      real(wp) :: transfer(2) = 0              !! lost in transfers, likewise
       real(wp) :: kinetic_start = 0            !! at the start, all ranks
       real(wp) :: largest = 0                  !! largest energy so far, the measure of the error
    end type ledger_t
@@ -73,6 +76,9 @@ module xmpm_model
       type(halo_t) :: halo                    !! all shared rows
       type(outbox_t) :: outbox                !! particles on their way out
       type(nodal_work_t) :: nodal_work        !! of all steps so far, this rank
+      type(flip_step_t) :: flip               !! FLIP's step beside that of PIC or XPIC
+      real(wp) :: impulses = 0                !! sum of m dv.dv of the nodes, this rank [energy]
+      real(wp) :: transfer_loss = 0           !! lost in transfers so far, this rank [energy]
       type(tally_t) :: tally                  !! of the last step, this rank
       type(ledger_t) :: ledger
       type(stage_clock_t) :: clock

@@ -3,7 +3,7 @@
 module xmpm_schemes
    use xmpm_kinds, only: wp
    use xmpm_stages, only: map_to_grid, advance_nodes, map_to_particles, strain_particles, &
-      move_particles, strain_before, advance_cracks, new_velocity_for_strain
+      move_particles, strain_before, advance_cracks, new_velocity_for_strain, finish_work
    use xmpm_model, only: model_t
    implicit none
    private
@@ -20,6 +20,7 @@ contains
       call map_to_grid(m)                         ! mass, momentum, force: eq. 6-8, 23-28
       call advance_nodes(m, velocity_step(m, dt)) ! eq. 4, 29
       call map_to_particles(m, remap=.true.)      ! eq. 43 and the second map
+      call finish_work(m, velocity_step(m, dt))
       call advance_cracks(m, dt)
       call strain_particles(m, dt)                ! eq. 45, 46, 44
    end subroutine step_musl
@@ -32,8 +33,8 @@ contains
       call strain_before(m, m%dt_before)
       call map_to_grid(m)
       call advance_nodes(m, velocity_step(m, dt))
-      call map_to_particles(m, remap=.false.)
-      call new_velocity_for_strain(m)
+      call map_to_particles(m, remap=.true.)      ! for work and cracks only
+      call finish_work(m, velocity_step(m, dt))
       call advance_cracks(m, dt)
       call move_particles(m, dt)
    end subroutine step_usf
@@ -45,9 +46,10 @@ contains
 
       call map_to_grid(m)
       call advance_nodes(m, velocity_step(m, dt))
-      call map_to_particles(m, remap=.false.)
-      call new_velocity_for_strain(m)
+      call map_to_particles(m, remap=size(m%cracks) > 0)
       call advance_cracks(m, dt)
+      call new_velocity_for_strain(m)
+      call finish_work(m, velocity_step(m, dt))
       call strain_particles(m, dt)
    end subroutine step_usl
 

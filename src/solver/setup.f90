@@ -5,7 +5,7 @@ module xmpm_setup
    use xmpm_error, only: error_t
    use xmpm_communicator, only: agree_on_error
    use xmpm_stage_clock, only: start_clock
-   use xmpm_deck, only: deck_t, block_t, count_blocks, find_block, warn, has, real_of, &
+   use xmpm_deck, only: deck_t, block_t, find_block, has, real_of, &
       reals_of, integer_of, text_of, problems
    use xmpm_lattice, only: linear_shape, gimp_shape
    use xmpm_grid, only: make_grid
@@ -83,14 +83,10 @@ contains
          m%take_step => step_usf
       case ('usl')
          m%take_step => step_usl
+         m%options%strain_by_nodes = .true.
       case default
          m%take_step => step_musl
       end select
-      if (shape == gimp_shape .and. lower(text_of(time, 'scheme')) /= 'musl' .and. &
-          count_blocks(deck, 'crack') > 0) then
-         call warn(deck, time, 'scheme', 'with GIMP and cracks only musl is sound: usf and usl '// &
-            'open cracks far too much')
-      end if
       associate (o => m%options)
          o%end_time = real_of(time, 'end')
          o%cfl = real_of(time, 'cfl')

@@ -5,13 +5,14 @@ module xmpm_stages
    use xmpm_stage_clock, only: start_stage, stop_stage, stage_p2g, stage_grid, stage_g2p, &
       stage_stress, stage_halo, stage_crack
    use xmpm_grid, only: clear_rows
-   use xmpm_momentum, only: force_out_of_balance, advance_momentum, &
+   use xmpm_momentum, only: force_out_of_balance, advance_momentum, impulse_energy, &
       blend_change, velocity_from_second, change_from_velocity
    use xmpm_boundary, only: apply_boundary, hold_boundary, region_set
    use xmpm_transfer, only: tally_t, particles_to_grid, update_velocity, smooth_velocity, &
       update_stress, advance_positions
+   use xmpm_transfer_loss, only: note_flip, loss_of_transfer
    use xmpm_storage, only: lanes, c_m
-   use xmpm_loads, only: apply_load, work_of_load, rows_of_bin, push_chunk
+   use xmpm_loads, only: apply_load, power_of_load, rows_of_bin, push_chunk
    use xmpm_lattice, only: stencil_offsets
    use xmpm_curves, only: curve_value
    use xmpm_crack, only: advance_crack
@@ -20,7 +21,7 @@ module xmpm_stages
    private
 
    public :: map_to_grid, advance_nodes, map_to_particles, strain_particles, move_particles
-   public :: strain_before, advance_cracks, new_velocity_for_strain
+   public :: strain_before, advance_cracks, new_velocity_for_strain, finish_work
 
 contains
 
@@ -88,16 +89,42 @@ contains
          call apply_boundary(m%boundaries(i), m%grid, dt)
       end do
       do i = 1, size(m%loads)
-         call work_of_load(m%loads(i), m%particles, m%kernels, m%sided, m%time, dt, m%grid)
+         m%loads(i)%work = m%loads(i)%work + 0.5_wp*dt*(power(m, i, 2) - power(m, i, 5))
       end do
       if (m%relaxing) m%force = force_out_of_balance(m%grid)/dt
       eta = pic_share(m)
+      if (loses(m)) then
+         call note_flip(m%particles, m%bodies%half, m%kernels, m%sided, m%grid, m%flip)
+         m%impulses = impulse_energy(m%grid)
+      end if
       if (eta > 0) then
          if (m%options%xpic) call smooth(m)
          call blend_change(m%grid, eta, m%options%xpic)
       end if
       call stop_stage(m%clock, stage_grid)
    end subroutine advance_nodes
+
+   !> Power of a load with the velocity in three fields of the rows.
+   function power(m, i, field)
+      type(model_t), intent(in) :: m
+      integer, intent(in) :: i, field
+      real(wp) :: power   !! of this rank [energy/time]
+
+      power = power_of_load(m%loads(i), m%particles, m%kernels, m%sided, m%time, m%grid, field)
+   end function power
+
+   !> Second half of the work of loads, with the velocity of fields 5:7 that strains the particles.
+   subroutine finish_work(m, dt)
+      type(model_t), intent(inout) :: m
+      real(wp), intent(in) :: dt   !! from v(n-1/2) to v(n+1/2) [time]
+      integer :: i
+
+      call start_stage(m%clock, stage_grid)
+      do i = 1, size(m%loads)
+         m%loads(i)%work = m%loads(i)%work + 0.5_wp*dt*power(m, i, 5)
+      end do
+      call stop_stage(m%clock, stage_grid)
+   end subroutine finish_work
 
    !> Share of the nodal velocity in the particles' new one: 1 for XPIC, pic dt otherwise.
    pure function pic_share(m) result(eta)
@@ -110,6 +137,14 @@ contains
          eta = min(1.0_wp, m%options%pic*m%dt)
       end if
    end function pic_share
+
+   !> Whether the transfers of this step lose energy that has to be measured.
+   pure function loses(m)
+      type(model_t), intent(in) :: m
+      logical :: loses
+
+      loses = pic_share(m) > 0 .or. m%options%strain_by_nodes
+   end function loses
 
    !> Velocity that a condition prescribes at the end of the velocity step.
    subroutine set_velocity(m, i, dt)
@@ -174,6 +209,8 @@ contains
          call update_velocity(m%particles, m%bodies, m%kernels, m%sided, edge + 1, &
             m%grid%blocks%n, keep, remap, m%grid, m%tally)
       end associate
+      if (loses(m)) m%transfer_loss = m%transfer_loss &
+         + loss_of_transfer(m%particles, m%flip, m%options%strain_by_nodes, m%impulses)
       call stop_stage(m%clock, stage_g2p)
       if (.not. remap) return
       call start_stage(m%clock, stage_halo)
@@ -187,7 +224,7 @@ contains
       call stop_stage(m%clock, stage_grid)
    end subroutine map_to_particles
 
-   !> Take the new nodal velocity itself for the strain increment (USL, and cracks in USF).
+   !> Take the new nodal velocity itself for the strain increment (USL).
    subroutine new_velocity_for_strain(m)
       type(model_t), intent(inout) :: m
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-ENERGIES = "kinetic strain external damping plastic contact fracture balance_error".split()
+ENERGIES = "kinetic strain external damping transfer plastic contact fracture balance_error".split()
 SINGLE = 2.5e-7  # two roundings to single precision, over the largest value
 
 
@@ -29,10 +29,10 @@ def read_table(path: Path) -> dict[str, np.ndarray]:
     return {name: rows[:, i] for i, name in enumerate(names)}
 
 
-def step_files(run: str) -> list[Path]:
-    """Step files of the particles of a run, in order."""
+def step_files(run: str, kind: str = "particles") -> list[Path]:
+    """Step files of the particles of a run, or of its cracks, in order."""
     path = Path(run)
-    return sorted((path.parent / f"{path.name}_particles").glob("*.vtkhdf"))
+    return sorted((path.parent / f"{path.name}_{kind}").glob("*.vtkhdf"))
 
 
 def read_particles(path: Path) -> dict[str, np.ndarray]:
@@ -157,7 +157,7 @@ def names_of(run: str) -> dict:
     """What values in a table of checks can be made of.
 
     `energy` and `probe` are dictionaries of columns; `start` and `last` those of the particles'
-    first and last step; `np`, and some functions of Python.
+    first and last step, `crack` that of the last crack surface; `np`, and some functions of Python.
     """
     path = Path(run)
     names = {"np": np, "abs": abs, "max": max, "min": min, "len": len, "set": set}
@@ -168,6 +168,8 @@ def names_of(run: str) -> dict:
     if step_files(run):
         names["start"] = read_particles(step_files(run)[0])
         names["last"] = read_particles(step_files(run)[-1])
+    if step_files(run, "crack"):
+        names["crack"] = read_particles(step_files(run, "crack")[-1])
     return names
 
 
