@@ -10,7 +10,7 @@ def gmsh_session():
     """The gmsh module with an empty model; what gmsh cannot do ends as one line."""
     import gmsh
 
-    gmsh.initialize(["xmpm-prep", "-noenv"], readConfigFiles=False, interruptible=False)
+    gmsh.initialize(["xmpm-prep"], readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.AbortOnError", 2)  # raise, do not go on
