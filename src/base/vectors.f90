@@ -1,10 +1,10 @@
-!> Products and lengths of vectors in space.
+!> Products and lengths of vectors in space, and the inverse of a matrix.
 module xmpm_vectors
    use xmpm_kinds, only: wp
    implicit none
    private
 
-   public :: cross, unit_vector, angle_between
+   public :: cross, unit_vector, angle_between, inverse
 
 contains
 
@@ -37,4 +37,15 @@ contains
 
       angle = atan2(norm2(cross(a, b)), dot_product(a, b))
    end function angle_between
+
+   !> Inverse of a matrix of three rows; its determinant must not be 0.
+   pure function inverse(a) result(b)
+      real(wp), intent(in) :: a(3, 3)   !! regular matrix
+      real(wp) :: b(3, 3)
+
+      b(1, :) = cross(a(:, 2), a(:, 3))
+      b(2, :) = cross(a(:, 3), a(:, 1))
+      b(3, :) = cross(a(:, 1), a(:, 2))
+      b = b/dot_product(a(:, 1), b(1, :))
+   end function inverse
 end module xmpm_vectors

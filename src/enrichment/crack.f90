@@ -169,7 +169,7 @@ contains
             call nearest_on_surface(crack%index, crack%surface, x, 2*reach, nearest, hint)
             call level_sets_at(crack%surface, crack%front, 2*reach, x, nearest, psi, phi, e1)
             if (psi >= 0.5_wp*beyond_reach) cycle
-            at = slot_for(near(i, :), number)
+            at = slot_for(near(i, :n_near*p%slots), number)
             if (at < 0) then
                call raise(error, code_numerics, 'more than '//to_text(p%slots)// &
                   ' cracks are near the particle '//to_text(p%id(i, c)))

@@ -13,7 +13,8 @@ module xmpm_loads
    implicit none
    private
 
-   public :: load_t, apply_load, power_of_load, rows_of_bin, push_chunk, gather_chunk
+   public :: load_t, apply_load, power_of_load, force_on_lanes, rows_of_bin, push_chunk, &
+      gather_chunk
 
    real(wp), parameter :: point = 1e-6_wp   !! width that makes GIMP a point at the face [cells]
 
@@ -185,6 +186,21 @@ contains
          power = power + sum(force*v)
       end do
    end function power_of_load
+
+   !> Force of the load on the lanes of a chunk, 0 where it acts on none.
+   subroutine force_on_lanes(load, p, grid, c, time, force)
+      type(load_t), intent(in) :: load
+      type(particles_t), intent(in) :: p
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: c                   !! chunk
+      real(wp), intent(in) :: time               !! [time]
+      real(wp), intent(out) :: force(lanes, 3)
+      real(wp) :: q(lanes, 14)
+
+      force = 0
+      if (is_loaded(load, p, c)) &
+         call force_of_lanes(load, p, grid, c, curve_value(load%curve, time), force, q)
+   end subroutine force_on_lanes
 
    pure function is_loaded(load, p, c) result(holds)
       type(load_t), intent(in) :: load

@@ -8,7 +8,7 @@ module xmpm_migration
    use xmpm_blocks, only: local_block, owner_of
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, record_t, append_particle, read_record, remove_lane, &
-      move_lane, n_hot, n_near, c_x
+      move_lane, n_hot, n_near, near_crack, c_x
    implicit none
    private
 
@@ -44,7 +44,7 @@ contains
                lane = lane - 1
                cycle
             end if
-            if (p%attached(c) > 0) near_moved = .true.
+            if (knows_crack(p, lane, c)) near_moved = .true.
             if (b > 0) then
                call move_lane(p, grid%lattice, grid%blocks, lane, c, to)
             else
@@ -73,6 +73,17 @@ contains
       to = 0
       if (b > 0) to = bins_per_block*(b - 1) + local_bin(bin)
    end subroutine find_bin
+
+   !> Whether a particle is near a crack.
+   pure function knows_crack(p, lane, chunk) result(knows)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: lane, chunk
+      logical :: knows
+
+      knows = .false.
+      if (p%attached(chunk) == 0) return
+      knows = any(p%near(lane, near_crack:n_near*p%slots:n_near, p%attached(chunk)) > 0)
+   end function knows_crack
 
    !> Add a particle to the outbox.
    subroutine put_into_outbox(outbox, record)
@@ -169,7 +180,7 @@ contains
       do i = 1, outbox%n
          goal(i) = destination(grid, outbox%records(i))
       end do
-      width = n_hot + 4 + n_near*p%slots
+      width = n_hot + 4 + size(p%near, 2)
       allocate (send(width, outbox%n), send_whole(n_whole, outbox%n))
       n = 0
       do k = 1, size(partners)
@@ -187,7 +198,7 @@ contains
       allocate (receive(width, sum(incoming)), receive_whole(n_whole, sum(incoming)))
       call trade(comm, partners, first, incoming, send, send_whole, receive, receive_whole)
       do i = 1, size(receive, 2)
-         call insert_record(p, grid, unpack_record(receive(:, i), receive_whole(:, i), p%slots))
+         call insert_record(p, grid, unpack_record(receive(:, i), receive_whole(:, i)))
       end do
    end subroutine exchange
 
@@ -206,15 +217,14 @@ contains
       whole = [record%id, record%sets, int(record%body, i8)]
    end subroutine pack_record
 
-   pure function unpack_record(values, whole, slots) result(record)
+   pure function unpack_record(values, whole) result(record)
       real(wp), intent(in) :: values(:)
       integer(i8), intent(in) :: whole(n_whole)
-      integer, intent(in) :: slots
       type(record_t) :: record
 
       record%hot = values(:n_hot)
       record%x0 = values(n_hot + 1:n_hot + 3)
-      if (slots > 0 .and. values(n_hot + 4) > 0) record%near = values(n_hot + 5:)
+      if (values(n_hot + 4) > 0) record%near = values(n_hot + 5:)
       record%id = whole(1)
       record%sets = whole(2)
       record%body = int(whole(3))

@@ -14,6 +14,7 @@ module xmpm_storage
    public :: record_t, new_record, renumber_blocks, attach
    public :: lanes, n_hot, c_x, c_v, c_m, c_vol, c_s
    public :: n_near, near_crack, near_side, near_psi, near_phi, near_jump, near_slope
+   public :: n_trace, trace_f, trace_work, is_traced
 
    integer, parameter :: lanes = 8      !! particles of a chunk
    integer, parameter :: c_x = 1        !! 1:3 position [length]
@@ -31,6 +32,11 @@ module xmpm_storage
    integer, parameter :: near_slope = 6   !! 6:8 gradient of H [1/length]
    integer, parameter :: n_near = 8       !! values of a slot
 
+   integer, parameter :: trace_f = 1      !! 1:9 deformation gradient F_ij at 3 (i - 1) + j, all 0
+                                          !! where the particle is not traced
+   integer, parameter :: trace_work = 10  !! stress work done on the particle so far [energy]
+   integer, parameter :: n_trace = 10     !! values of a trace
+
    !> All particles of a rank.
    type :: particles_t
       integer :: n_chunks = 0                     !! chunks ever used; those behind are fresh
@@ -38,6 +44,8 @@ module xmpm_storage
       integer :: n_attached = 0                   !! near records ever used
       integer :: free_attached = 0                !! first of the free near records
       integer :: slots = 0                        !! cracks that a particle can be near to
+      integer :: trace = -1                       !! place before the trace in a near record, -1
+                                                  !! where no fracture parameters are wanted
       real(wp), allocatable :: q(:, :, :)         !! (8,14,chunks) hot components
       real(wp), allocatable :: x0(:, :, :)        !! (8,3,chunks) first position [length]
       integer(i8), allocatable :: id(:, :)        !! (8,chunks) number for life, 0 in empty lanes
@@ -49,7 +57,8 @@ module xmpm_storage
       integer, allocatable :: next(:)             !! (chunks) next chunk of the bin or free chain
       integer, allocatable :: attached(:)         !! (chunks) near record, 0 far from cracks
       integer, allocatable :: head(:, :)          !! (64,blocks) first chunk of each bin
-      real(wp), allocatable :: near(:, :, :)      !! (8,8*slots,records) crack slots of the lanes
+      real(wp), allocatable :: near(:, :, :)      !! (8,8*slots+10,records) crack slots of the
+                                                  !! lanes, and their trace where there is one
       integer, allocatable :: next_attached(:)    !! (records) chain of free near records
    end type particles_t
 
@@ -60,7 +69,7 @@ module xmpm_storage
       integer(i8) :: id = 0                     !! number for life
       integer(i8) :: sets = 0                   !! bit per named set
       integer :: body = 0                       !! body
-      real(wp), allocatable :: near(:)          !! (8*slots) crack slots, unallocated far from
+      real(wp), allocatable :: near(:)          !! crack slots and trace, unallocated far from
                                                 !! cracks
    end type record_t
 
@@ -82,11 +91,12 @@ contains
    end function new_record
 
    !> Empty storage for a number of blocks and about `expected` particles.
-   subroutine clear_particles(p, n_blocks, expected, slots)
+   subroutine clear_particles(p, n_blocks, expected, slots, traced)
       type(particles_t), intent(inout) :: p
       integer, intent(in) :: n_blocks   !! blocks of this rank
       integer, intent(in) :: expected   !! particles
       integer, intent(in) :: slots      !! cracks that a particle can be near to
+      logical, intent(in) :: traced     !! whether near records hold a trace
       integer :: capacity
 
       capacity = expected/5 + 64
@@ -95,6 +105,7 @@ contains
       p%n_attached = 0
       p%free_attached = 0
       p%slots = slots
+      p%trace = merge(n_near*slots, -1, traced)
       if (allocated(p%q)) then
          deallocate (p%q, p%x0, p%id, p%sets, p%count, p%body, p%bin, p%next, p%attached, &
             p%any_set)
@@ -104,7 +115,7 @@ contains
       allocate (p%id(lanes, capacity), p%sets(lanes, capacity))
       allocate (p%count(capacity), p%body(capacity), p%bin(capacity), p%next(capacity))
       allocate (p%attached(capacity), p%any_set(capacity))
-      allocate (p%near(lanes, n_near*slots, 0), p%next_attached(0))
+      allocate (p%near(lanes, n_near*slots + merge(n_trace, 0, traced), 0), p%next_attached(0))
       if (allocated(p%head)) deallocate (p%head)
       allocate (p%head(bins_per_block, n_blocks), source=0)
    end subroutine clear_particles
@@ -116,6 +127,15 @@ contains
 
       n = sum(p%count(:p%n_chunks))
    end function count_particles
+
+   !> Whether a chunk has room for the traces of its particles.
+   pure function is_traced(p, chunk) result(traced)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: chunk
+      logical :: traced
+
+      traced = p%trace >= 0 .and. p%attached(chunk) > 0
+   end function is_traced
 
    !> Lattice bin of a chunk.
    pure function bin_of_chunk(p, blocks, chunk) result(bin)
@@ -356,7 +376,7 @@ contains
       else
          n = size(p%near, 3)
          if (p%n_attached == n) then
-            allocate (near(lanes, n_near*p%slots, 2*n + 64), chain(2*n + 64))
+            allocate (near(lanes, size(p%near, 2), 2*n + 64), chain(2*n + 64))
             near(:, :, :n) = p%near
             chain(:n) = p%next_attached
             call move_alloc(near, p%near)

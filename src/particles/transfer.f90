@@ -8,7 +8,8 @@ module xmpm_transfer
    use xmpm_lattice, only: tile_base, stencil_offsets, bin_corner, bins_per_block, block_width
    use xmpm_blocks, only: nodes_per_block
    use xmpm_grid, only: grid_t
-   use xmpm_storage, only: particles_t, lanes, c_v, c_m, c_vol, c_x
+   use xmpm_storage, only: particles_t, lanes, c_v, c_m, c_vol, c_x, is_traced
+   use xmpm_trace, only: follow_chunk
    use xmpm_frame, only: frame_t
    use xmpm_kernels, only: kernels_t, tile_nodes
    use xmpm_sided, only: sided_t
@@ -286,7 +287,7 @@ contains
       type(tally_t), intent(inout) :: tally
       integer, intent(inout) :: movers(:)            !! chunks that particles left
       integer, intent(inout) :: n_movers             !! number of them
-      real(wp) :: tile(8, tile_nodes), gradient(lanes, 9), value(lanes, 3), work(lanes)
+      real(wp) :: tile(8, tile_nodes), gradient(lanes, 9), value(lanes, 3), work(lanes), power(lanes)
       real(wp) :: corners(3, bins_per_block)
       type(frame_t) :: frame
       integer :: base(bins_per_block), offsets(grid%lattice%reach**3), b, k, c, s
@@ -314,8 +315,11 @@ contains
                   call gradient_sided(p, c, kernels, sided, s, offsets, frame, grid, gradient, &
                      value)
                end if
+               power = 0
                call bodies%laws(bodies%law_of(p%body(c)))%law%update(gradient, dt, p%q(:, :, c), &
-                  work)
+                  power)
+               work = work + power
+               if (is_traced(p, c)) call follow_chunk(p, c, gradient, dt, power)
                call move_lanes(value, move, frame, p%q(:, :, c), tally%volume, left)
                if (left) then
                   n_movers = n_movers + 1

@@ -91,7 +91,7 @@ contains
       call lay_out(m, pack(keys, parts == m%comm%rank))
       call clear_particles(m%particles, m%grid%blocks%n, &
          expected(plans, keys, parts, m%comm%rank), &
-         merge(3, 0, size(m%cracks) > 0))
+         merge(3, 0, size(m%cracks) > 0), count_blocks(deck, 'fracture') > 0)
       do i = 1, size(plans)
          call fill_body(m, i, plans(i))
       end do

@@ -1,0 +1,208 @@
+!> The domain form of the dynamic J integral and of the interaction integral, as sums over
+!> particles.
+!>
+!> With q = w(r) l(xi) e1, where r is the distance from the front and xi runs along e3 of the point,
+!>
+!>    G int l e1 . n ds = sum_p { V [s_ij u_i,k - W d_jk] q_k,j + f_i u_i,k q_k }
+!>
+!> holds for any front, straight or curved, since q is any field that is l e1 on the front and
+!> tangent to the faces. f = V s_ij,j is what the nodes say, so that inertia, body forces, damping
+!> and tractions on the faces need no terms of their own. For a front that moves at C > 0 the
+!> kinetic energy adds - V E q_k,k - V rho v_i v_i,k q_k, v relative to the material at the front
+!> (the two cancel in the sum at C = 0, where their quadrature would only add noise).
+module xmpm_domain_integral
+   use xmpm_kinds, only: wp, pi
+   use xmpm_front, only: front_t
+   use xmpm_samples, only: sample_t
+   use xmpm_front_points, only: front_points_t, window_at
+   use xmpm_near_tip, only: near_tip_fields, strain_of
+   implicit none
+   private
+
+   public :: domain_sums_t, domain_shape_t, sum_domains, plateau_area, clear_sums
+
+
+   !> The field q.
+   type :: domain_shape_t
+      real(wp) :: inner = 0                    !! w = 1 up to here [length]
+      real(wp), allocatable :: radius(:)       !! (nr) w = 0 from here, ascending [length]
+      real(wp) :: half_width = 0               !! of the window along the front [length]
+      real(wp) :: reach = 0                    !! particles at parts of the front further away
+                                               !! than this do not count [length]
+   end type domain_shape_t
+
+   !> Sums of this rank for each point.
+   type :: domain_sums_t
+      real(wp), allocatable :: j(:, :)               !! (nr,n) J times window length [energy/length]
+      real(wp), allocatable :: interaction(:, :, :)  !! (3,nr,n) with unit modes I, II, III
+      real(wp), allocatable :: volume(:, :)          !! (nr,n) integral of w l [length^3]
+      real(wp), allocatable :: material(:, :)        !! (4,n) volume, and it times lambda, mu, rho
+   end type domain_sums_t
+
+contains
+
+   !> Room for the sums of n points, all 0.
+   pure subroutine clear_sums(sums, n_radii, n)
+      type(domain_sums_t), intent(out) :: sums
+      integer, intent(in) :: n_radii, n
+
+      allocate (sums%j(n_radii, n), sums%interaction(3, n_radii, n), sums%volume(n_radii, n), &
+         sums%material(4, n), source=0.0_wp)
+   end subroutine clear_sums
+
+   !> Add all samples to the points near them.
+   pure subroutine sum_domains(samples, front, points, shape, speed, drift, sums)
+      type(sample_t), intent(in) :: samples(:)
+      type(front_t), intent(in) :: front
+      type(front_points_t), intent(in) :: points
+      type(domain_shape_t), intent(in) :: shape
+      real(wp), intent(in) :: speed(:)      !! (n) of the front at the points [length/time]
+      real(wp), intent(in) :: drift(:, :)   !! (3,n) velocity of the material there [length/time]
+      type(domain_sums_t), intent(inout) :: sums
+      integer, allocatable :: near(:)
+      integer :: i, k, n, m
+
+      allocate (near(points%n))
+      do i = 1, size(samples)
+         call points_near(front, points, samples(i), shape%reach, near, n)
+         do k = 1, n
+            m = near(k)
+            call add_sample(samples(i), points, m, shape, speed(m), drift(:, m), sums)
+         end do
+      end do
+   end subroutine sum_domains
+
+   !> Points within reach of a sample's place on the front, along the front to both sides.
+   pure subroutine points_near(front, points, s, reach, near, n)
+      type(front_t), intent(in) :: front
+      type(front_points_t), intent(in) :: points
+      type(sample_t), intent(in) :: s
+      real(wp), intent(in) :: reach          !! [length]
+      integer, intent(inout) :: near(:)      !! filled up to n
+      integer, intent(out) :: n
+      integer :: node, edge, way
+
+      n = 0
+      do way = 2, 1, -1
+         node = front%edge_node(way, s%edge)
+         do while (n < size(near))
+            if (norm2(s%foot - points%x(:, node)) > reach) exit
+            if (n > 0) then
+               if (node == near(1) .and. way == 2) return
+               if (way == 1 .and. any(near(:n) == node)) return
+            end if
+            n = n + 1
+            near(n) = node
+            edge = front%node_edge(way, node)
+            if (edge == 0) exit
+            node = front%edge_node(way, edge)
+         end do
+      end do
+   end subroutine points_near
+
+   !> Add one sample to one point.
+   pure subroutine add_sample(s, points, m, shape, speed, drift, sums)
+      type(sample_t), intent(in) :: s
+      type(front_points_t), intent(in) :: points
+      integer, intent(in) :: m
+      type(domain_shape_t), intent(in) :: shape
+      real(wp), intent(in) :: speed, drift(3)
+      type(domain_sums_t), intent(inout) :: sums
+      real(wp) :: flux(3, 4), source(4), across(4), value(4), d(3), l, dl, w, dw
+      integer :: k
+
+      d = matmul(s%x - points%x(:, m), points%frame(:, :, m))
+      if (abs(d(3)) >= shape%half_width) return
+      call window_at(d(3), shape%half_width, l, dl)
+      call fluxes(s, points%frame(:, :, m), points%turn(:, :, m), d, flux, source)
+      if (speed > 0) call add_kinetic(s, points%frame(:, 1, m), drift, flux(1, 1), source(1))
+      across = matmul(matmul(s%away, points%frame(:, :, m)), flux)
+      do k = size(shape%radius), 1, -1
+         if (s%r >= shape%radius(k)) exit
+         call profile(s%r, shape%inner, shape%radius(k), w, dw)
+         value = s%volume*(dw*l*across + w*dl*flux(3, :)) + w*l*source
+         sums%j(k, m) = sums%j(k, m) + value(1)
+         sums%interaction(:, k, m) = sums%interaction(:, k, m) + value(2:)
+         sums%volume(k, m) = sums%volume(k, m) + s%volume*w*l
+      end do
+      sums%material(:, m) = sums%material(:, m) + s%volume*[1.0_wp, s%lambda, s%mu, s%density]
+   end subroutine add_sample
+
+   !> Flux and source of J (1) and of the interaction with modes I to III (2:4), in the frame.
+   pure subroutine fluxes(s, e, turn, d, flux, source)
+      type(sample_t), intent(in) :: s
+      real(wp), intent(in) :: e(3, 3), turn(3, 3)   !! frame, turn of the material
+      real(wp), intent(in) :: d(3)                  !! place in the frame [length]
+      real(wp), intent(out) :: flux(3, 4)           !! [stress], interaction [stress/K]
+      real(wp), intent(out) :: source(4)            !! [force], interaction [force/K]
+      real(wp) :: t(3, 3), h(3), f(3), unit_stress(6, 3), slope(3, 3), poisson, energy
+      integer :: k
+
+      t = matmul(transpose(e), matmul(full(s%stress), e))
+      h = matmul(e(:, 1) - matmul(turn, matmul(s%back, e(:, 1))), e)
+      f = matmul(s%pull, e)
+      flux(:, 1) = matmul(t, h)
+      flux(1, 1) = flux(1, 1) - s%work
+      source(1) = dot_product(f, h)
+      poisson = 0.5_wp*s%lambda/(s%lambda + s%mu)
+      call near_tip_fields(d(1), d(2), s%side, s%mu, poisson, unit_stress, slope)
+      do k = 1, 3
+         energy = product_of(t, strain_of(unit_stress(:, k), s%mu, poisson))
+         flux(:, k + 1) = matmul(t, slope(:, k)) + matmul(full(unit_stress(:, k)), h)
+         flux(1, k + 1) = flux(1, k + 1) - energy
+         source(k + 1) = dot_product(f, slope(:, k))
+      end do
+   end subroutine fluxes
+
+   !> Kinetic energy of a moving front: velocity relative to the material at the front.
+   pure subroutine add_kinetic(s, e1, drift, flux, source)
+      type(sample_t), intent(in) :: s
+      real(wp), intent(in) :: e1(3), drift(3)
+      real(wp), intent(inout) :: flux     !! along e1 [stress]
+      real(wp), intent(inout) :: source   !! [force]
+      real(wp) :: v(3)
+
+      v = s%v - drift
+      flux = flux - 0.5_wp*s%density*sum(v*v)
+      source = source - s%volume*s%density*dot_product(v, matmul(s%rate, e1))
+   end subroutine add_kinetic
+
+   !> w and dw/dr: 1 up to the inner radius, then a cosine to 0.
+   pure subroutine profile(r, inner, outer, w, dw)
+      real(wp), intent(in) :: r, inner, outer   !! [length]
+      real(wp), intent(out) :: w, dw            !! 0 to 1, [1/length]
+      real(wp) :: z
+
+      w = 1
+      dw = 0
+      if (r <= inner) return
+      z = pi*(r - inner)/(outer - inner)
+      w = 0.5_wp*(1 + cos(z))
+      dw = -0.5_wp*pi/(outer - inner)*sin(z)
+   end subroutine profile
+
+   !> Integral of w over the plane normal to a front: what the volume is over the window length.
+   pure function plateau_area(inner, outer) result(area)
+      real(wp), intent(in) :: inner, outer   !! [length]
+      real(wp) :: area, d                    !! [length^2]
+
+      d = outer - inner
+      area = pi*inner**2 + pi*(inner*d + d*d*(0.5_wp - 2/pi**2))
+   end function plateau_area
+
+   pure function full(s) result(t)
+      real(wp), intent(in) :: s(6)
+      real(wp) :: t(3, 3)
+
+      t = reshape([s(1), s(4), s(6), s(4), s(2), s(5), s(6), s(5), s(3)], [3, 3])
+   end function full
+
+   !> t : e for a symmetric e given as 11 22 33 12 23 13.
+   pure function product_of(t, e) result(product)
+      real(wp), intent(in) :: t(3, 3), e(6)
+      real(wp) :: product
+
+      product = t(1, 1)*e(1) + t(2, 2)*e(2) + t(3, 3)*e(3) &
+         + 2*(t(1, 2)*e(4) + t(2, 3)*e(5) + t(1, 3)*e(6))
+   end function product_of
+end module xmpm_domain_integral

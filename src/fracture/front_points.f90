@@ -1,0 +1,190 @@
+!> The points of a crack's fronts where fracture parameters are found: their frames, how far their
+!> material has turned, and the length of front that a window about each of them holds.
+module xmpm_front_points
+   use xmpm_kinds, only: wp, pi
+   use xmpm_surface, only: refresh_geometry
+   use xmpm_front, only: front_t, refresh_front
+   use xmpm_crack, only: crack_t
+   use xmpm_vectors, only: unit_vector
+   implicit none
+   private
+
+   public :: front_points_t, list_points, end_points, window_at, window_length
+
+
+   !> All points of the fronts of one crack, chain after chain along e3.
+   type :: front_points_t
+      integer :: n = 0                          !! points
+      integer, allocatable :: node(:)           !! (n) node of the front
+      integer, allocatable :: chain(:)          !! (n) front of the crack
+      real(wp), allocatable :: x(:, :)          !! (3,n) places [length]
+      real(wp), allocatable :: s(:)             !! (n) length along the front [length]
+      real(wp), allocatable :: frame(:, :, :)   !! (3,3,n) columns e1 ahead, e2 normal, e3 along
+      real(wp), allocatable :: turn(:, :, :)    !! (3,3,n) rotation of the material since the start
+      logical, allocatable :: at_end(:)         !! (n) last point of an open front
+      real(wp), allocatable :: beyond(:, :)     !! (2,chains) how far the material goes on past the
+                                                !! first and last node, negative where it ends
+                                                !! before them [length]
+   end type front_points_t
+
+contains
+
+   !> The nodes of all fronts, as the surface is now.
+   subroutine list_points(crack, points)
+      type(crack_t), intent(in) :: crack              !! gathered
+      type(front_points_t), intent(out) :: points     !! ends still as the mesh has them
+      integer :: c, i, first, last
+
+      associate (f => crack%front)
+         points%n = f%node_count
+         points%node = [(i, i=1, f%node_count)]
+         points%x = f%x
+         points%s = f%s
+         allocate (points%chain(points%n), points%at_end(points%n))
+         allocate (points%frame(3, 3, points%n), points%turn(3, 3, points%n))
+         allocate (points%beyond(2, f%chain_count), source=0.0_wp)
+         points%frame(:, 1, :) = f%e1
+         points%frame(:, 2, :) = f%e2
+         points%frame(:, 3, :) = f%e3
+         points%at_end = .false.
+         do c = 1, f%chain_count
+            first = f%chain_offset(c)
+            last = f%chain_offset(c + 1) - 1
+            points%chain(first:last) = c
+            points%at_end([first, last]) = .not. f%closed(c)
+         end do
+      end associate
+      call find_turns(crack, points)
+   end subroutine list_points
+
+   !> Rotation of each frame from where its vertices started.
+   subroutine find_turns(crack, points)
+      type(crack_t), intent(in) :: crack
+      type(front_points_t), intent(inout) :: points
+      type(crack_t) :: start
+      real(wp) :: old(3, 3)
+      integer :: i
+
+      start%surface = crack%surface
+      start%front = crack%front
+      start%surface%up = 0
+      start%surface%um = 0
+      call refresh_geometry(start%surface)
+      call refresh_front(start%surface, start%front)
+      do i = 1, points%n
+         old(:, 1) = start%front%e1(:, i)
+         old(:, 2) = start%front%e2(:, i)
+         old(:, 3) = start%front%e3(:, i)
+         points%turn(:, :, i) = matmul(points%frame(:, :, i), transpose(old))
+      end do
+   end subroutine find_turns
+
+   !> Put the last points of open fronts to where the material ends, if that is before them.
+   pure subroutine end_points(front, points)
+      type(front_t), intent(in) :: front
+      type(front_points_t), intent(inout) :: points   !! `beyond` is known
+      integer :: c, first, last
+
+      do c = 1, front%chain_count
+         if (front%closed(c)) cycle
+         first = front%chain_offset(c)
+         last = front%chain_offset(c + 1) - 1
+         call pull_back(front, points, first, first + 1, 1.0_wp, points%beyond(1, c))
+         call pull_back(front, points, last, last - 1, -1.0_wp, points%beyond(2, c))
+      end do
+   end subroutine end_points
+
+   pure subroutine pull_back(front, points, node, inner, way, beyond)
+      type(front_t), intent(in) :: front
+      type(front_points_t), intent(inout) :: points
+      integer, intent(in) :: node, inner   !! the end and its neighbour
+      real(wp), intent(in) :: way          !! of the chain from the end: 1 or -1
+      real(wp), intent(in) :: beyond       !! [length]
+      real(wp) :: d(3)
+
+      if (beyond >= 0) return
+      d = front%x(:, inner) - front%x(:, node)
+      points%x(:, node) = front%x(:, node) - beyond*unit_vector(d)
+      points%s(node) = front%s(node) - way*beyond
+   end subroutine pull_back
+
+   !> The window l of a point: 1 at the point, a cosine to 0 at the half-width along e3.
+   pure subroutine window_at(xi, half_width, l, slope)
+      real(wp), intent(in) :: xi           !! along e3 from the point [length]
+      real(wp), intent(in) :: half_width   !! [length]
+      real(wp), intent(out) :: l           !! 0 to 1
+      real(wp), intent(out) :: slope       !! dl/dxi [1/length]
+
+      l = 0
+      slope = 0
+      if (abs(xi) >= half_width) return
+      l = 0.5_wp*(1 + cos(pi*xi/half_width))
+      slope = -0.5_wp*pi/half_width*sin(pi*xi/half_width)
+   end subroutine window_at
+
+   !> Integral of l e1 . n over the front in the material: what J of the window is divided by.
+   pure function window_length(front, points, i, half_width, reach) result(length)
+      type(front_t), intent(in) :: front
+      type(front_points_t), intent(in) :: points
+      integer, intent(in) :: i                 !! point
+      real(wp), intent(in) :: half_width       !! of the window [length]
+      real(wp), intent(in) :: reach            !! parts of the front further away do not count
+                                               !! [length]
+      real(wp) :: length                       !! [length]
+      real(wp) :: a(3), b(3)
+      integer :: k
+
+      length = 0
+      do k = 1, front%edge_count
+         if (points%chain(front%edge_node(1, k)) /= points%chain(i)) cycle
+         call edge_in_material(front, points, k, a, b)
+         if (norm2(0.5_wp*(a + b) - points%x(:, i)) > reach) cycle
+         length = length + dot_product(points%frame(:, 1, i), front%edge_e1(:, k)) &
+            *edge_length(a, b, points%x(:, i), points%frame(:, 3, i), half_width)
+      end do
+   end function window_length
+
+   !> Ends of an edge, moved to the end of the material where it is the last of an open front.
+   pure subroutine edge_in_material(front, points, k, a, b)
+      type(front_t), intent(in) :: front
+      type(front_points_t), intent(in) :: points
+      integer, intent(in) :: k
+      real(wp), intent(out) :: a(3), b(3)
+      real(wp) :: t(3)
+      integer :: c
+
+      associate (start => front%edge_node(1, k), end => front%edge_node(2, k))
+         c = points%chain(start)
+         a = front%x(:, start)
+         b = front%x(:, end)
+         t = unit_vector(b - a)
+         if (front%node_edge(1, start) == 0) a = a - points%beyond(1, c)*t
+         if (front%node_edge(2, end) == 0) b = b + points%beyond(2, c)*t
+      end associate
+   end subroutine edge_in_material
+
+   !> Integral of the window along a straight edge from a to b.
+   pure function edge_length(a, b, x, e3, half_width) result(length)
+      real(wp), intent(in) :: a(3), b(3), x(3), e3(3), half_width
+      real(wp) :: length, from, to, l, slope
+
+      from = dot_product(a - x, e3)
+      to = dot_product(b - x, e3)
+      if (abs(to - from) > 1e-6_wp*half_width) then
+         length = norm2(b - a)/(to - from)*(antiderivative(to) - antiderivative(from))
+      else
+         call window_at(0.5_wp*(from + to), half_width, l, slope)
+         length = norm2(b - a)*l
+      end if
+
+   contains
+
+      pure function antiderivative(xi) result(g)
+         real(wp), intent(in) :: xi
+         real(wp) :: g, z
+
+         z = max(-half_width, min(half_width, xi))
+         g = 0.5_wp*(z + half_width/pi*sin(pi*z/half_width))
+      end function antiderivative
+   end function edge_length
+end module xmpm_front_points

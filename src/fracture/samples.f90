@@ -1,0 +1,183 @@
+!> The particles around the fronts of one crack, with all that integrals over them need.
+module xmpm_samples
+   use xmpm_kinds, only: wp
+   use xmpm_lattice, only: bin_corner
+   use xmpm_grid, only: grid_t
+   use xmpm_storage, only: particles_t, lanes, bin_of_chunk, is_traced, c_x, c_v, c_m, c_vol, c_s, &
+      n_near, near_crack, near_side, near_psi, trace_f, trace_work
+   use xmpm_kernels, only: kernels_t
+   use xmpm_sided, only: sided_t
+   use xmpm_transfer, only: bodies_t
+   use xmpm_elastic, only: elastic_t
+   use xmpm_loads, only: load_t, force_on_lanes
+   use xmpm_vectors, only: unit_vector, inverse
+   use xmpm_front, only: front_t, front_place_t, nearest_on_front
+   use xmpm_crack, only: crack_t
+   use xmpm_chunk_state, only: pull_and_rate
+   implicit none
+   private
+
+   public :: sample_t, collect_samples, place_sample
+
+   !> A particle near a front.
+   type :: sample_t
+      real(wp) :: x(3) = 0           !! position [length]
+      real(wp) :: volume = 0         !! [length^3]
+      real(wp) :: density = 0        !! now [mass/length^3]
+      real(wp) :: lambda = 0         !! first Lame constant [stress]
+      real(wp) :: mu = 0             !! shear modulus [stress]
+      real(wp) :: stress(6) = 0      !! xx yy zz xy yz xz [stress]
+      real(wp) :: work = 0           !! stress work on a volume [stress]
+      real(wp) :: back(3, 3) = 0     !! inverse of the deformation gradient
+      real(wp) :: pull(3) = 0        !! force of the divergence of stress [force]
+      real(wp) :: v(3) = 0           !! velocity [length/time]
+      real(wp) :: rate(3, 3) = 0     !! velocity gradient dv_i/dx_j [1/time]
+      real(wp) :: side = 1           !! 1 above, -1 below the crack
+      real(wp) :: r = 0              !! distance from the front [length]
+      real(wp) :: away(3) = 0        !! unit vector from the front
+      real(wp) :: foot(3) = 0        !! nearest point of the front [length]
+      integer :: edge = 0            !! front edge that holds it
+   end type sample_t
+
+contains
+
+   !> The traced particles of this rank within reach of the fronts of a crack. The rows hold mass,
+   !> momentum and force as P2G leaves them.
+   subroutine collect_samples(crack, number, reach, grid, p, bodies, kernels, sided, loads, time, &
+         samples)
+      type(crack_t), intent(in) :: crack                      !! gathered
+      integer, intent(in) :: number                           !! of the crack
+      real(wp), intent(in) :: reach                           !! [length]
+      type(grid_t), intent(in) :: grid
+      type(particles_t), intent(in) :: p
+      type(bodies_t), intent(in) :: bodies
+      type(kernels_t), intent(in) :: kernels
+      type(sided_t), intent(in) :: sided
+      type(load_t), intent(in) :: loads(:)
+      real(wp), intent(in) :: time                            !! of the loads [time]
+      type(sample_t), allocatable, intent(out) :: samples(:)
+      type(front_place_t) :: place
+      real(wp) :: centre(3), margin
+      integer :: c, n
+
+      allocate (samples(256))
+      n = 0
+      margin = 0.9_wp*grid%lattice%size
+      do c = 1, p%n_chunks
+         if (p%count(c) == 0) cycle
+         if (.not. is_traced(p, c)) cycle
+         centre = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) &
+            + 0.5_wp*grid%lattice%size
+         place = front_place_t()
+         call nearest_on_front(crack%front, centre, reach + margin, place)
+         if (place%edge == 0) cycle
+         if (n + lanes > size(samples)) call make_room(samples)
+         call sample_chunk(crack%front, number, reach, grid, p, c, bodies, kernels, sided, loads, &
+            time, samples, n)
+      end do
+      samples = samples(:n)
+   end subroutine collect_samples
+
+   pure subroutine make_room(samples)
+      type(sample_t), allocatable, intent(inout) :: samples(:)
+      type(sample_t), allocatable :: more(:)
+
+      allocate (more(2*size(samples)))
+      more(:size(samples)) = samples
+      call move_alloc(more, samples)
+   end subroutine make_room
+
+   !> Append the particles of one chunk.
+   subroutine sample_chunk(front, number, reach, grid, p, c, bodies, kernels, sided, loads, time, &
+         samples, n)
+      type(front_t), intent(in) :: front
+      integer, intent(in) :: number, c
+      real(wp), intent(in) :: reach, time
+      type(grid_t), intent(in) :: grid
+      type(particles_t), intent(in) :: p
+      type(bodies_t), intent(in) :: bodies
+      type(kernels_t), intent(in) :: kernels
+      type(sided_t), intent(in) :: sided
+      type(load_t), intent(in) :: loads(:)
+      type(sample_t), intent(inout) :: samples(:)
+      integer, intent(inout) :: n
+      type(sample_t) :: s
+      real(wp) :: pull(lanes, 3), rate(lanes, 9), load(lanes, 3)
+      logical :: inside
+      integer :: i
+
+      call pull_and_rate(p, c, bodies%half(p%body(c)), kernels, sided, grid, pull, rate)
+      do i = 1, size(loads)
+         call force_on_lanes(loads(i), p, grid, c, time, load)
+         pull = pull - load
+      end do
+      do i = 1, p%count(c)
+         call read_lane(p, c, i, number, s)
+         if (.not. abs(s%back(1, 1)) > 0) cycle
+         call place_sample(front, reach, s, inside)
+         if (.not. inside) cycle
+         select type (law => bodies%laws(bodies%law_of(p%body(c)))%law)
+         type is (elastic_t)
+            s%lambda = law%lambda
+            s%mu = law%mu
+         end select
+         s%pull = pull(i, :)
+         s%rate = transpose(reshape(rate(i, :), [3, 3]))
+         n = n + 1
+         samples(n) = s
+      end do
+   end subroutine sample_chunk
+
+   !> What a particle carries itself; `back` stays 0 for one that is not traced.
+   pure subroutine read_lane(p, c, lane, number, s)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: c, lane, number
+      type(sample_t), intent(out) :: s
+      integer :: k
+
+      associate (near => p%near(lane, :, p%attached(c)), q => p%q(lane, :, c))
+         associate (trace => near(p%trace + 1:))
+            if (.not. any(abs(trace(trace_f:trace_f + 8)) > 0)) return
+            s%x = q(c_x:c_x + 2)
+            s%v = q(c_v:c_v + 2)
+            s%volume = q(c_vol)
+            s%density = q(c_m)/q(c_vol)
+            s%stress = q(c_s:c_s + 5)
+            s%work = trace(trace_work)/q(c_vol)
+            s%back = inverse(transpose(reshape(trace(trace_f:trace_f + 8), [3, 3])))
+         end associate
+         s%side = 0
+         do k = 0, n_near*(p%slots - 1), n_near
+            if (nint(near(k + near_crack)) == number) s%side = sign(1.0_wp, near(k + near_psi))
+         end do
+      end associate
+   end subroutine read_lane
+
+   !> Find the nearest point of the front; past its open ends the front goes on straight.
+   pure subroutine place_sample(front, reach, s, inside)
+      type(front_t), intent(in) :: front
+      real(wp), intent(in) :: reach          !! [length]
+      type(sample_t), intent(inout) :: s     !! x and side are known
+      logical, intent(out) :: inside         !! within reach
+      type(front_place_t) :: place
+      real(wp) :: t(3), d(3)
+
+      call nearest_on_front(front, s%x, reach, place)
+      inside = place%edge > 0
+      if (.not. inside) return
+      s%edge = place%edge
+      d = s%x - place%point
+      if (place%node > 0) then
+         if (any(front%node_edge(:, place%node) == 0)) then
+            t = unit_vector(front%x(:, front%edge_node(2, place%edge)) &
+               - front%x(:, front%edge_node(1, place%edge)))
+            d = d - dot_product(d, t)*t
+         end if
+      end if
+      s%foot = s%x - d
+      s%r = norm2(d)
+      s%away = unit_vector(d)
+      if (abs(s%side) > 0) return
+      s%side = sign(1.0_wp, dot_product(d, front%e2(:, front%edge_node(1, place%edge))))
+   end subroutine place_sample
+end module xmpm_samples
