@@ -21,7 +21,6 @@ module xmpm_domain_integral
 
    public :: domain_sums_t, domain_shape_t, sum_domains, plateau_area, clear_sums
 
-
    !> The field q.
    type :: domain_shape_t
       real(wp) :: inner = 0                    !! w = 1 up to here [length]
@@ -47,7 +46,7 @@ contains
       integer, intent(in) :: n_radii, n
 
       allocate (sums%j(n_radii, n), sums%interaction(3, n_radii, n), sums%volume(n_radii, n), &
-         sums%material(4, n), source=0.0_wp)
+                sums%material(4, n), source=0.0_wp)
    end subroutine clear_sums
 
    !> Add all samples to the points near them.
@@ -203,6 +202,6 @@ contains
       real(wp) :: product
 
       product = t(1, 1)*e(1) + t(2, 2)*e(2) + t(3, 3)*e(3) &
-         + 2*(t(1, 2)*e(4) + t(2, 3)*e(5) + t(1, 3)*e(6))
+                + 2*(t(1, 2)*e(4) + t(2, 3)*e(5) + t(1, 3)*e(6))
    end function product_of
 end module xmpm_domain_integral

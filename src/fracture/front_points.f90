@@ -11,7 +11,6 @@ module xmpm_front_points
 
    public :: front_points_t, list_points, end_points, window_at, window_length
 
-
    !> All points of the fronts of one crack, chain after chain along e3.
    type :: front_points_t
       integer :: n = 0                          !! points
@@ -140,7 +139,7 @@ contains
          call edge_in_material(front, points, k, a, b)
          if (norm2(0.5_wp*(a + b) - points%x(:, i)) > reach) cycle
          length = length + dot_product(points%frame(:, 1, i), front%edge_e1(:, k)) &
-            *edge_length(a, b, points%x(:, i), points%frame(:, 3, i), half_width)
+                  *edge_length(a, b, points%x(:, i), points%frame(:, 3, i), half_width)
       end do
    end function window_length
 

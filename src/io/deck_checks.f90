@@ -4,11 +4,11 @@ module xmpm_deck_checks
    use xmpm_text, only: string_t, to_text, lower
    use xmpm_text_lists, only: append
    use xmpm_deck_data, only: deck_t, block_t, entry_t, has, given, valid, real_of, reals_of, &
-      text_of, texts_of, complain, warn, find_block, add_entry
+      text_of, texts_of, complain, warn, count_blocks, find_block, add_entry
    use xmpm_deck_units, only: si_factor, sound_speed
    use xmpm_deck_cracks, only: check_crack, check_symmetry_planes
    use xmpm_deck_choices, only: exactly_one, refuse
-   use xmpm_deck_references, only: resolve
+   use xmpm_deck_references, only: resolve, resolve_list
    use xmpm_deck_loads, only: check_load, check_boundary, check_time_keys, check_box
    implicit none
    private
@@ -40,12 +40,27 @@ contains
          case ('time'); call check_time(deck, block)
          case ('relax'); call check_relax(deck, block)
          case ('output'); call check_output(deck, block)
+         case ('fracture'); call check_fracture(deck, block)
          case ('probe'); call check_probe(deck, block)
          end select
          deck%blocks(i) = block
       end do
       call check_symmetry_planes(deck)
    end subroutine check_deck
+
+   !> Times, and cracks that exist.
+   subroutine check_fracture(deck, block)
+      type(deck_t), intent(inout) :: deck
+      type(block_t), intent(in) :: block
+
+      call resolve_list(deck, block, 'cracks', 'crack')
+      if (count_blocks(deck, 'crack') == 0) then
+         call complain(deck, block, '', 'there is no *CRACK whose fronts could be looked at')
+      end if
+      if (.not. (has(block, 'every') .or. has(block, 'at'))) then
+         call complain(deck, block, '', "one of the keys 'every' and 'at' must say when")
+      end if
+   end subroutine check_fracture
 
    subroutine check_job(deck, block)
       type(deck_t), intent(inout) :: deck

@@ -3,14 +3,14 @@ module xmpm_deck_references
    use xmpm_text, only: string_t
    use xmpm_text_lists, only: append, upper
    use xmpm_keywords, only: split_words
-   use xmpm_deck_data, only: deck_t, block_t, has, valid, text_of, complain, find_block, &
+   use xmpm_deck_data, only: deck_t, block_t, has, valid, text_of, texts_of, complain, find_block, &
       count_blocks, block_named, collect_names
    use xmpm_deck_choices, only: set_texts
    use xmpm_deck_hints, only: did_you_mean
    implicit none
    private
 
-   public :: resolve, resolve_set, missing
+   public :: resolve, resolve_list, resolve_set, missing
 
 contains
 
@@ -49,6 +49,23 @@ contains
          call set_texts(block, key, found%name)
       end if
    end subroutine resolve
+
+   !> A key that names several blocks of a keyword: each must exist.
+   subroutine resolve_list(deck, block, key, keyword)
+      type(deck_t), intent(inout) :: deck
+      type(block_t), intent(in) :: block
+      character(len=*), intent(in) :: key
+      character(len=*), intent(in) :: keyword
+      type(string_t), allocatable :: names(:)
+      integer :: i
+
+      if (.not. valid(block, key)) return
+      names = texts_of(block, key)
+      do i = 1, size(names)
+         if (block_named(deck, keyword, names(i)%s) > 0) cycle
+         call complain(deck, block, key, missing(deck, keyword, names(i)%s))
+      end do
+   end subroutine resolve_list
 
    pure function missing(deck, keyword, name, also) result(text)
       type(deck_t), intent(in) :: deck

@@ -66,6 +66,7 @@ contains
       case ('stress'); text = m//'/('//l//' '//t//'2)'
       case ('toughness'); text = m//'/('//l//'^0.5 '//t//'2)'
       case ('force'); text = m//' '//l//'/'//t//'2'
+      case ('release rate'); text = m//'/'//t//'2'
       case ('energy'); text = m//' '//l//'2/'//t//'2'
       case ('momentum'); text = m//' '//l//'/'//t
       case ('angular momentum'); text = m//' '//l//'2/'//t

@@ -296,6 +296,22 @@ contains
       call add_key(t, key_t(name='history', dimension='time', range=positive, &
          meaning='interval of the rows of energy and probe tables; that of every where not given'))
 
+      call add_keyword(t, keyword_t(name='fracture', &
+         meaning='J and stress intensity factors at the crack fronts, into NAME_front.csv'))
+      call add_key(t, key_t(name='every', dimension='time', range=positive, &
+         meaning='interval of the values'))
+      call add_key(t, key_t(name='at', most=any_number, dimension='time', range=not_negative, &
+         meaning='single times of the values'))
+      call add_key(t, key_t(name='cracks', kind=kind_text, most=any_number, &
+         meaning='names of the *CRACK blocks; all that have a front where not given'))
+      call add_key(t, key_t(name='radii', most=any_number, dimension='length', range=positive, &
+         meaning='radii of the domains, growing; 3, 4 and 5 cells where not given'))
+      call add_key(t, key_t(name='window', dimension='length', range=positive, &
+         meaning='half-width of the window along the front; 2 cells where not given'))
+      call add_key(t, key_t(name='behind', dimension='length', range=positive, &
+         meaning='distance behind the front of the openings that part the modes; 2 cells where '// &
+         'not given'))
+
       call add_keyword(t, keyword_t(name='probe', naming=must_have_name, repeatable=.true., &
          meaning='a quantity written over time: at a point, through a section or from a boundary'))
       call add_key(t, key_t(name='point', least=3, most=3, dimension='length', &

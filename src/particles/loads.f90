@@ -198,8 +198,9 @@ contains
       real(wp) :: q(lanes, 14)
 
       force = 0
-      if (is_loaded(load, p, c)) &
+      if (is_loaded(load, p, c)) then
          call force_of_lanes(load, p, grid, c, curve_value(load%curve, time), force, q)
+      end if
    end subroutine force_on_lanes
 
    pure function is_loaded(load, p, c) result(holds)

@@ -287,7 +287,8 @@ contains
       type(tally_t), intent(inout) :: tally
       integer, intent(inout) :: movers(:)            !! chunks that particles left
       integer, intent(inout) :: n_movers             !! number of them
-      real(wp) :: tile(8, tile_nodes), gradient(lanes, 9), value(lanes, 3), work(lanes), power(lanes)
+      real(wp) :: tile(8, tile_nodes), gradient(lanes, 9), value(lanes, 3), work(lanes), &
+         power(lanes)
       real(wp) :: corners(3, bins_per_block)
       type(frame_t) :: frame
       integer :: base(bins_per_block), offsets(grid%lattice%reach**3), b, k, c, s

@@ -17,6 +17,7 @@ module xmpm_model
    use xmpm_transfer_loss, only: flip_step_t
    use xmpm_curves, only: curve_t
    use xmpm_crack, only: crack_t
+   use xmpm_fracture, only: fracture_t
    implicit none
    private
 
@@ -68,6 +69,7 @@ module xmpm_model
       type(kernels_t) :: kernels
       type(sided_t) :: sided
       type(crack_t), allocatable :: cracks(:)
+      type(fracture_t) :: fracture            !! what is wanted at the fronts, and the last values
       type(load_t), allocatable :: loads(:)
       type(gravity_t), allocatable :: gravity(:)
       type(boundary_t), allocatable :: boundaries(:)
@@ -98,6 +100,7 @@ module xmpm_model
       integer, allocatable :: movers(:)       !! chunks that particles left
       integer :: n_movers = 0                 !! number of them
       integer(i8) :: moved = 0                !! particles that changed bin since the last sort
+      logical :: mapped = .false.             !! the rows hold mass, momentum and force of now
       logical :: relaxing = .false.           !! before the start, the force out of balance is
                                               !! wanted
       real(wp) :: force = 0                   !! sum of |m a| of the nodes while relaxing, this rank

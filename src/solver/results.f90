@@ -14,11 +14,13 @@ module xmpm_results
    use xmpm_probes, only: probe_t, read_probes, probe_names, probe_units, probe_values
    use xmpm_particle_fields, only: collect_particles, particle_unit
    use xmpm_crack_fields, only: collect_cracks, crack_fields
+   use xmpm_front_table, only: front_names, front_units, write_fronts
    use xmpm_model, only: model_t
    implicit none
    private
 
-   public :: results_t, open_results, write_fields, write_energy, write_probes, close_results
+   public :: results_t, open_results, write_fields, write_energy, write_probes, &
+      write_front_values, close_results
 
    !> What a run writes.
    type :: results_t
@@ -32,7 +34,7 @@ module xmpm_results
       type(string_t), allocatable :: crack_units(:)   !! of these
       type(probe_t), allocatable :: probes(:)
       type(series_t) :: particles, cracks
-      type(history_t) :: energy, probe
+      type(history_t) :: energy, probe, front
       type(provenance_t) :: provenance
    end type results_t
 
@@ -67,7 +69,7 @@ contains
       if (allocated(error)) return
       call open_or_remove(results%cracks, m, folder, job//'_crack', results%has_cracks, error)
       if (allocated(error)) return
-      if (m%comm%rank == 0) call open_histories(results, deck, path, error)
+      if (m%comm%rank == 0) call open_histories(results, m, deck, path, error)
       call agree_on_error(m%comm, error)
    end subroutine open_results
 
@@ -120,8 +122,9 @@ contains
    end subroutine open_or_remove
 
    !> Open the tables; rank 0 calls.
-   subroutine open_histories(results, deck, path, error)
+   subroutine open_histories(results, m, deck, path, error)
       type(results_t), intent(inout) :: results
+      type(model_t), intent(in) :: m
       type(deck_t), intent(in) :: deck
       character(len=*), intent(in) :: path   !! folder and job
       type(error_t), allocatable, intent(out) :: error
@@ -130,6 +133,13 @@ contains
       call open_history(results%energy, path//'_energy.csv', balance_names(), balance_units(deck), &
          results%provenance, error)
       if (allocated(error)) return
+      if (size(m%fracture%cracks) > 0) then
+         call open_history(results%front, path//'_front.csv', front_names(), front_units(deck), &
+            results%provenance, error)
+         if (allocated(error)) return
+      else
+         call remove_file(path//'_front.csv')
+      end if
       if (size(results%probes) == 0) then
          call remove_file(path//'_probe.csv')
          return
@@ -207,6 +217,14 @@ contains
       call write_row_text(results%probe, cells)
    end subroutine write_probes
 
+   !> Write the rows of the fronts as they were measured last; rank 0 writes, others return.
+   subroutine write_front_values(results, m)
+      type(results_t), intent(inout) :: results
+      type(model_t), intent(in) :: m
+
+      call write_fronts(results%front, m)
+   end subroutine write_front_values
+
    !> Close the tables; the first row that could not be written is reported. Collective.
    subroutine close_results(results, m, error)
       type(results_t), intent(inout) :: results
@@ -216,6 +234,8 @@ contains
 
       call close_history(results%energy, error)
       call close_history(results%probe, second)
+      if (allocated(second) .and. .not. allocated(error)) call move_alloc(second, error)
+      call close_history(results%front, second)
       if (allocated(second) .and. .not. allocated(error)) call move_alloc(second, error)
       call agree_on_error(m%comm, error)
    end subroutine close_results

@@ -9,10 +9,12 @@ module xmpm_run
    use xmpm_progress, only: progress_t, run_state_t, start_progress, count_step, progress_due, &
       report_progress
    use xmpm_balance, only: balance_t
-   use xmpm_results, only: results_t, write_fields, write_energy, write_probes
+   use xmpm_results, only: results_t, write_fields, write_energy, write_probes, write_front_values
+   use xmpm_stages, only: measure_fronts
    use xmpm_ledger, only: take_balance
    use xmpm_settle, only: settle, choose_step
    use xmpm_relax, only: relax
+   use xmpm_fracture, only: fracture_t
    use xmpm_model, only: model_t
    implicit none
    private
@@ -25,6 +27,7 @@ module xmpm_run
    type :: agenda_t
       real(wp) :: fields = 0      !! time of the next files [time]
       real(wp) :: history = 0     !! time of the next rows [time]
+      real(wp) :: fronts = 0      !! time of the next values at the fronts [time]
       type(balance_t) :: balance  !! the last one taken
    end type agenda_t
 
@@ -47,6 +50,8 @@ contains
          return
       end if
       call start_progress(progress, log, m%time, m%options%end_time)
+      if (.not. m%fracture%every > 0) agenda%fronts = &
+         fronts_due(0.0_wp, m%fracture%at, -1.0_wp, 0.0_wp)
       call write_due(m, results, agenda, .false., error)
       do while (.not. allocated(error))
          if (m%time >= m%options%end_time .or. m%step >= int(m%options%most_steps, i8)) exit
@@ -88,8 +93,13 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: slack
 
-      call start_stage(m%clock, stage_output)
       slack = 1e-9_wp*m%options%end_time
+      if (is_due(m%fracture, m%time, agenda%fronts - slack, last)) then
+         call measure_fronts(m)
+         call write_front_values(results, m)
+         agenda%fronts = fronts_due(m%fracture%every, m%fracture%at, m%time, slack)
+      end if
+      call start_stage(m%clock, stage_output)
       if (last .or. m%time >= agenda%history - slack) then
          call take_balance(m, .true., agenda%balance)
          call write_energy(results, m, agenda%balance)
@@ -102,6 +112,26 @@ contains
       end if
       call stop_stage(m%clock, stage_output)
    end subroutine write_due
+
+   !> Whether values at the fronts are wanted now; those of an interval at the end in any case.
+   pure function is_due(fracture, time, due, last) result(is)
+      type(fracture_t), intent(in) :: fracture
+      real(wp), intent(in) :: time, due
+      logical, intent(in) :: last
+      logical :: is
+
+      is = size(fracture%cracks) > 0 .and. (time >= due .or. (last .and. fracture%every > 0))
+   end function is_due
+
+   !> Next time of values at the fronts: of the interval or of the list.
+   pure function fronts_due(every, at, time, slack) result(due)
+      real(wp), intent(in) :: every, at(:), time, slack
+      real(wp) :: due
+
+      due = huge(due)
+      if (any(at > time + slack)) due = minval(at, at > time + slack)
+      if (every > 0) due = min(due, next_due(time, every, slack))
+   end function fronts_due
 
    pure function next_due(time, every, slack) result(due)
       real(wp), intent(in) :: time, every, slack

@@ -18,6 +18,7 @@ module xmpm_setup
    use xmpm_setup_bodies, only: set_up_materials, set_up_bodies, body_plan_t
    use xmpm_setup_conditions, only: set_up_conditions
    use xmpm_setup_cracks, only: read_cracks
+   use xmpm_setup_fracture, only: set_up_fracture
    use xmpm_ledger, only: start_ledger
    use xmpm_model, only: model_t
    implicit none
@@ -55,6 +56,10 @@ contains
       do i = 1, size(m%cracks)
          call start_crack(m%cracks(i), m%comm, m%grid, m%particles)
       end do
+      call set_up_fracture(m, deck)
+      call problems(deck, error)
+      call agree_on_error(m%comm, error)
+      if (allocated(error)) return
       call renew_level_sets(m, error)
       call agree_on_error(m%comm, error)
       if (allocated(error)) return

@@ -3,7 +3,7 @@ module xmpm_stages
    use xmpm_kinds, only: wp
    use xmpm_halo, only: start_sum, finish_sum
    use xmpm_stage_clock, only: start_stage, stop_stage, stage_p2g, stage_grid, stage_g2p, &
-      stage_stress, stage_halo, stage_crack
+      stage_stress, stage_halo, stage_crack, stage_fracture
    use xmpm_grid, only: clear_rows
    use xmpm_momentum, only: force_out_of_balance, advance_momentum, impulse_energy, &
       blend_change, velocity_from_second, change_from_velocity
@@ -16,12 +16,13 @@ module xmpm_stages
    use xmpm_lattice, only: stencil_offsets
    use xmpm_curves, only: curve_value
    use xmpm_crack, only: advance_crack
+   use xmpm_fracture, only: measure_front
    use xmpm_model, only: model_t
    implicit none
    private
 
    public :: map_to_grid, advance_nodes, map_to_particles, strain_particles, move_particles
-   public :: strain_before, advance_cracks, new_velocity_for_strain, finish_work
+   public :: strain_before, advance_cracks, new_velocity_for_strain, finish_work, measure_fronts
 
 contains
 
@@ -31,6 +32,10 @@ contains
       type(model_t), intent(inout) :: m
       integer :: i
 
+      if (m%mapped) then
+         m%mapped = .false.
+         return
+      end if
       call start_stage(m%clock, stage_p2g)
       m%tally = tally_t()
       call clear_rows(m%grid)
@@ -286,6 +291,25 @@ contains
       end if
       allocate (m%movers(m%particles%n_chunks + m%particles%n_chunks/8 + 64))
    end subroutine fit_movers
+
+   !> J and stress intensity factors of now at the fronts that the deck asks for. What is mapped to
+   !> the grid for them serves the next step as well.
+   subroutine measure_fronts(m)
+      type(model_t), intent(inout) :: m
+      real(wp), allocatable :: speed(:)
+      integer :: i
+
+      call map_to_grid(m)
+      m%mapped = .true.
+      call start_stage(m%clock, stage_fracture)
+      do i = 1, size(m%fracture%cracks)
+         allocate (speed(m%cracks(m%fracture%cracks(i))%front%node_count), source=0.0_wp)
+         call measure_front(m%fracture, i, m%cracks, m%comm, m%grid, m%particles, m%bodies, &
+            m%kernels, m%sided, m%loads, m%time, speed)
+         deallocate (speed)
+      end do
+      call stop_stage(m%clock, stage_fracture)
+   end subroutine measure_fronts
 
    !> Move the faces of the cracks with the velocity of fields 5:7.
    subroutine advance_cracks(m, dt)

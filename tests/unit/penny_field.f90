@@ -20,23 +20,23 @@ contains
       real(wp), intent(out) :: gradient(3, 3)  !! du_i/dx_j
       real(wp) :: r, z, way, mu, c, e(3, 3), g(3, 3), s(3, 3)
       real(wp) :: pz, pzz, pzzz, prz, przz, pr, prr, prrz
-      complex(wp) :: w, root, l, i
+      complex(wp) :: w, root, l
+      complex(wp), parameter :: i = (0.0_wp, 1.0_wp), one = (1.0_wp, 0.0_wp)
 
-      i = (0.0_wp, 1.0_wp)
       r = norm2(x(:2))
       z = abs(x(3))
       way = merge(-1.0_wp, 1.0_wp, x(3) < 0)
       mu = young/(2*(1 + poisson))
-      w = z - i*a
-      root = sqrt(r*r + w*w)
+      w = cmplx(z, -a, wp)
+      root = sqrt(cmplx(r*r, 0.0_wp, wp) + w*w)
       l = log(w + root)
       c = 2*p/pi
-      pz = -c*aimag(-root + z*l)
-      pzz = -c*aimag(l + i*a/root)
-      pzzz = -c*aimag(1/root - i*a*w/root**3)
-      prz = -c*aimag(-r/root + z*r/(root*(w + root)))
-      przz = -c*aimag(r/(root*(w + root)) - i*a*r/root**3)
-      pr = c/r*aimag(-w*root/2 + r*r/2*l + z*root)
+      pz = -c*(-aimag(root) + z*aimag(l))
+      pzz = -c*(aimag(l) + a*aimag(i/root))
+      pzzz = -c*(aimag(one/root) - a*aimag(i*w/root**3))
+      prz = -c*r*(-aimag(one/root) + z*aimag(one/(root*(w + root))))
+      przz = -c*r*(aimag(one/(root*(w + root))) - a*aimag(i/root**3))
+      pr = c/r*(-0.5_wp*aimag(w*root) + 0.5_wp*r*r*aimag(l) + z*aimag(root))
       prr = -pr/r - pzz
       prrz = -prz/r - pzzz
       g = 0

@@ -1,0 +1,235 @@
+!> Fracture parameters of all fronts that the deck asks for.
+module xmpm_fracture
+   use xmpm_kinds, only: wp
+   use xmpm_communicator, only: comm_t, sum_all, max_all
+   use xmpm_lattice, only: bin_corner
+   use xmpm_grid, only: grid_t
+   use xmpm_storage, only: particles_t, attach, bin_of_chunk, c_s, c_vol
+   use xmpm_trace, only: start_trace
+   use xmpm_transfer, only: bodies_t
+   use xmpm_kernels, only: kernels_t
+   use xmpm_sided, only: sided_t
+   use xmpm_loads, only: load_t
+   use xmpm_elastic, only: elastic_t
+   use xmpm_vectors, only: unit_vector
+   use xmpm_surface_index, only: nearest_t, nearest_on_surface
+   use xmpm_front, only: front_t, front_place_t, nearest_on_front
+   use xmpm_crack, only: crack_t, gather_crack
+   use xmpm_near_tip, only: strain_of
+   use xmpm_samples, only: sample_t, collect_samples
+   use xmpm_front_points, only: list_points, end_points, front_points_t
+   use xmpm_domain_integral, only: domain_shape_t, domain_sums_t, clear_sums, sum_domains
+   use xmpm_front_values, only: front_values_t, clear_values, find_values, flag_other
+   implicit none
+   private
+
+   public :: fracture_t, start_traces, measure_front
+
+   !> What the deck wants, and what was found last.
+   type :: fracture_t
+      integer, allocatable :: cracks(:)             !! cracks whose fronts are looked at
+      real(wp) :: every = 0                         !! interval, 0 for none [time]
+      real(wp), allocatable :: at(:)                !! single times, ascending [time]
+      type(domain_shape_t) :: shape                 !! of the domains
+      real(wp) :: behind = 0                        !! where openings are taken [length]
+      type(front_values_t), allocatable :: values(:)   !! of each crack in the list, last time
+   end type fracture_t
+
+contains
+
+   !> Trace the particles around the fronts of a crack, from now on. What they have of stress now
+   !> counts as reached from a state without stress and rotation.
+   subroutine start_traces(crack, reach, grid, bodies, p)
+      type(crack_t), intent(in) :: crack
+      real(wp), intent(in) :: reach              !! [length]
+      type(grid_t), intent(in) :: grid
+      type(bodies_t), intent(in) :: bodies
+      type(particles_t), intent(inout) :: p
+      type(front_place_t) :: place
+      real(wp) :: centre(3)
+      integer :: c, i
+
+      do c = 1, p%n_chunks
+         if (p%count(c) == 0) cycle
+         centre = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) &
+            + 0.5_wp*grid%lattice%size
+         place = front_place_t()
+         call nearest_on_front(crack%front, centre, reach + grid%lattice%size, place)
+         if (place%edge == 0) cycle
+         if (p%attached(c) == 0) call attach(p, c)
+         select type (law => bodies%laws(bodies%law_of(p%body(c)))%law)
+         type is (elastic_t)
+            do i = 1, p%count(c)
+               associate (stress => p%q(i, c_s:c_s + 5, c))
+                  call start_trace(p, i, c, strain_of(stress, law%mu, &
+                     0.5_wp*law%lambda/(law%lambda + law%mu)), &
+                     p%q(i, c_vol, c)*law%strain_energy(stress))
+               end associate
+            end do
+         end select
+      end do
+   end subroutine start_traces
+
+   !> Find the values at the fronts of one crack of the list. The rows hold mass, momentum and
+   !> force as P2G leaves them; nothing of the run is changed. Collective.
+   subroutine measure_front(fracture, which, cracks, comm, grid, p, bodies, kernels, sided, loads, &
+         time, speed)
+      type(fracture_t), intent(inout) :: fracture
+      integer, intent(in) :: which                 !! place in the list
+      type(crack_t), intent(in) :: cracks(:)
+      type(comm_t), intent(in) :: comm
+      type(grid_t), intent(in) :: grid
+      type(particles_t), intent(in) :: p
+      type(bodies_t), intent(in) :: bodies
+      type(kernels_t), intent(in) :: kernels
+      type(sided_t), intent(in) :: sided
+      type(load_t), intent(in) :: loads(:)
+      real(wp), intent(in) :: time                 !! [time]
+      real(wp), intent(in) :: speed(:)             !! of the front at its nodes [length/time]
+      type(crack_t) :: crack
+      type(front_values_t) :: values
+      type(sample_t), allocatable :: samples(:)
+      type(domain_sums_t) :: sums
+
+      associate (number => fracture%cracks(which), shape => fracture%shape)
+         crack = cracks(number)
+         call gather_crack(crack, comm, grid, .true.)
+         call list_points(crack, values%points)
+         call clear_values(values, values%points%n)
+         values%speed = speed
+         call collect_samples(crack, number, maxval(shape%radius), grid, p, bodies, kernels, &
+            sided, loads, time, samples)
+         call find_ends(crack%front, comm, grid%lattice%size, samples, values%points)
+         call clear_sums(sums, size(shape%radius), values%points%n)
+         call sum_domains(samples, crack%front, values%points, shape, speed, &
+            drift_at(samples, values%points, speed, comm), sums)
+         call sum_over_ranks(comm, sums)
+         call find_values(crack, shape, sums, fracture%behind, values)
+         call flag_neighbours(cracks, number, values)
+      end associate
+      fracture%values(which) = values
+   end subroutine measure_front
+
+   !> Where the material ends along each open front. Collective.
+   subroutine find_ends(front, comm, h, samples, points)
+      type(front_t), intent(in) :: front
+      type(comm_t), intent(in) :: comm
+      real(wp), intent(in) :: h                           !! cell size [length]
+      type(sample_t), intent(in) :: samples(:)
+      type(front_points_t), intent(inout) :: points       !! ends are moved
+      real(wp), allocatable :: most(:)
+      real(wp) :: t(3), end(3)
+      integer :: c, i, way
+
+      if (all(front%closed)) return
+      allocate (most(2*front%chain_count), source=-huge(1.0_wp))
+      do c = 1, front%chain_count
+         if (front%closed(c)) cycle
+         do way = 1, 2
+            call end_of_chain(front, c, way, end, t)
+            do i = 1, size(samples)
+               if (samples(i)%r > 1.5_wp*h) cycle
+               if (norm2(samples(i)%foot - end) > 3*h) cycle
+               most(2*c - 2 + way) = max(most(2*c - 2 + way), &
+                  dot_product(samples(i)%x - end, t) + 0.5_wp*samples(i)%volume**(1/3.0_wp))
+            end do
+         end do
+      end do
+      call max_all(comm, most)
+      where (most < -3*h) most = 0
+      points%beyond = reshape(min(most, h), [2, front%chain_count])
+      call end_points(front, points)
+   end subroutine find_ends
+
+   !> First or last node of a chain and the direction out of it.
+   pure subroutine end_of_chain(front, c, way, end, t)
+      type(front_t), intent(in) :: front
+      integer, intent(in) :: c, way
+      real(wp), intent(out) :: end(3), t(3)
+      integer :: node, inner
+
+      node = front%chain_offset(c)
+      inner = node + 1
+      if (way == 2) then
+         node = front%chain_offset(c + 1) - 1
+         inner = node - 1
+      end if
+      end = front%x(:, node)
+      t = unit_vector(end - front%x(:, inner))
+   end subroutine end_of_chain
+
+   !> Velocity of the material at moving points: the mean of the particles within the inner radius
+   !> of a domain. Collective.
+   function drift_at(samples, points, speed, comm) result(drift)
+      type(sample_t), intent(in) :: samples(:)
+      type(front_points_t), intent(in) :: points
+      real(wp), intent(in) :: speed(:)
+      type(comm_t), intent(in) :: comm
+      real(wp) :: drift(3, points%n)
+      real(wp) :: sums(4, points%n), reach
+      integer :: i, m
+
+      drift = 0
+      if (.not. any(speed > 0)) return
+      sums = 0
+      do m = 1, points%n
+         do i = 1, size(samples)
+            reach = 2*samples(i)%volume**(1/3.0_wp)
+            if (norm2(samples(i)%x - points%x(:, m)) > 2*reach) cycle
+            sums(:, m) = sums(:, m) + samples(i)%volume*[samples(i)%v, 1.0_wp]
+         end do
+      end do
+      call sum_all(comm, sums)
+      do m = 1, points%n
+         if (sums(4, m) > 0) drift(:, m) = sums(:3, m)/sums(4, m)
+      end do
+   end function drift_at
+
+   subroutine sum_over_ranks(comm, sums)
+      type(comm_t), intent(in) :: comm
+      type(domain_sums_t), intent(inout) :: sums
+      real(wp), allocatable :: all(:, :)
+      integer :: nr, n
+
+      nr = size(sums%j, 1)
+      n = size(sums%j, 2)
+      allocate (all(5*nr + 4, n))
+      all(:nr, :) = sums%j
+      all(nr + 1:4*nr, :) = reshape(sums%interaction, [3*nr, n])
+      all(4*nr + 1:5*nr, :) = sums%volume
+      all(5*nr + 1:, :) = sums%material
+      call sum_all(comm, all)
+      sums%j = all(:nr, :)
+      sums%interaction = reshape(all(nr + 1:4*nr, :), [3, nr, n])
+      sums%volume = all(4*nr + 1:5*nr, :)
+      sums%material = all(5*nr + 1:, :)
+   end subroutine sum_over_ranks
+
+   !> Mark the points whose domain meets another crack, or another part of their own fronts.
+   subroutine flag_neighbours(cracks, number, values)
+      type(crack_t), intent(in) :: cracks(:)
+      integer, intent(in) :: number                    !! of the crack
+      type(front_values_t), intent(inout) :: values
+      type(nearest_t) :: nearest
+      integer :: i, k
+      logical :: meets
+
+      associate (points => values%points)
+         do i = 1, points%n
+            meets = .false.
+            do k = 1, size(cracks)
+               if (k == number) cycle
+               call nearest_on_surface(cracks(k)%index, cracks(k)%surface, points%x(:, i), &
+                  values%radius(i), nearest)
+               meets = meets .or. nearest%triangle > 0
+            end do
+            do k = 1, points%n
+               if (points%chain(k) == points%chain(i) .and. &
+                  dot_product(points%frame(:, 1, k), points%frame(:, 1, i)) > -0.5_wp) cycle
+               meets = meets .or. norm2(points%x(:, k) - points%x(:, i)) < values%radius(i)
+            end do
+            if (meets) values%flags(i) = values%flags(i) + flag_other
+         end do
+      end associate
+   end subroutine flag_neighbours
+end module xmpm_fracture

@@ -1,0 +1,137 @@
+!> J, the stress intensity factors and their error bars at the points of a crack's fronts, from the
+!> sums over the domains.
+module xmpm_front_values
+   use xmpm_kinds, only: wp
+   use xmpm_front_points, only: front_points_t, window_length
+   use xmpm_domain_integral, only: domain_sums_t, domain_shape_t, plateau_area
+   use xmpm_velocity_functions, only: elastic_constants_t, elastic_constants, velocity_functions, &
+      split_rate
+   use xmpm_hoop_stress, only: hoop_stress_t
+   use xmpm_opening, only: opening_behind
+   use xmpm_crack, only: crack_t
+   implicit none
+   private
+
+   public :: front_values_t, find_values, clear_values
+   public :: flag_leaves, flag_other, flag_held, flag_end, flag_closed, flag_smaller
+
+   integer, parameter :: flag_leaves = 1     !! no domain fits into the material
+   integer, parameter :: flag_other = 2      !! another front or crack is in the domain
+   integer, parameter :: flag_held = 4       !! a boundary condition is in the domain
+   integer, parameter :: flag_end = 8        !! the end of a front, where it meets a surface
+   integer, parameter :: flag_closed = 16    !! the faces are closed: no mode I
+   integer, parameter :: flag_smaller = 32   !! not all radii fit: the largest that does is used
+
+   real(wp), parameter :: volume_error = 0.05_wp   !! a domain with less material leaves the body
+
+   !> What is known at the points of one crack's fronts at one time.
+   type :: front_values_t
+      type(front_points_t) :: points
+      real(wp), allocatable :: j(:)            !! (n) energy release rate [energy/length^2]
+      real(wp), allocatable :: j_bar(:, :)     !! (2,n) its lowest and highest over radii
+      real(wp), allocatable :: k(:, :)         !! (3,n) K_I, K_II, K_III [stress length^(1/2)]
+      real(wp), allocatable :: k_bar(:, :, :)  !! (2,3,n) lowest and highest, radii and methods
+      real(wp), allocatable :: kink(:)         !! (n) angle of the largest hoop stress [rad]
+      real(wp), allocatable :: k_star(:)       !! (n) K* in that direction
+      real(wp), allocatable :: speed(:)        !! (n) of the front [length/time]
+      real(wp), allocatable :: radius(:)       !! (n) of the domain [length]
+      integer, allocatable :: flags(:)         !! (n) sums of flag_*
+      type(elastic_constants_t), allocatable :: material(:)   !! (n)
+   end type front_values_t
+
+contains
+
+   !> Room for the values of n points, all 0.
+   pure subroutine clear_values(values, n)
+      type(front_values_t), intent(inout) :: values   !! points are kept
+      integer, intent(in) :: n
+
+      allocate (values%j(n), values%j_bar(2, n), values%k(3, n), values%k_bar(2, 3, n), &
+         values%kink(n), values%k_star(n), values%speed(n), values%radius(n), source=0.0_wp)
+      allocate (values%flags(n), source=0)
+      allocate (values%material(n))
+   end subroutine clear_values
+
+   !> Values of all points from the sums of all ranks.
+   subroutine find_values(crack, shape, sums, behind, values)
+      type(crack_t), intent(in) :: crack               !! gathered
+      type(domain_shape_t), intent(in) :: shape
+      type(domain_sums_t), intent(in) :: sums          !! of all ranks
+      real(wp), intent(in) :: behind                   !! where openings are taken [length]
+      type(front_values_t), intent(inout) :: values    !! points and speed are known
+      integer :: i
+
+      do i = 1, values%points%n
+         if (values%points%at_end(i)) values%flags(i) = values%flags(i) + flag_end
+         if (.not. sums%material(1, i) > 0) then
+            values%flags(i) = values%flags(i) + flag_leaves
+            cycle
+         end if
+         associate (s => sums%material(:, i))
+            values%material(i) = elastic_constants(s(2)/s(1), s(3)/s(1), s(4)/s(1))
+         end associate
+         call values_of_point(crack, shape, sums, behind, values, i)
+      end do
+   end subroutine find_values
+
+   !> Values of one point: the largest domain that fits answers, all that fit make the bars.
+   subroutine values_of_point(crack, shape, sums, behind, values, i)
+      type(crack_t), intent(in) :: crack
+      type(domain_shape_t), intent(in) :: shape
+      type(domain_sums_t), intent(in) :: sums
+      real(wp), intent(in) :: behind
+      type(front_values_t), intent(inout) :: values
+      integer, intent(in) :: i
+      real(wp) :: length, j(size(shape%radius)), k(3, size(shape%radius), 2), a(3), opening(3)
+      integer :: fits, n, r
+
+      length = window_length(crack%front, values%points, i, shape%half_width, shape%reach)
+      call count_fitting(shape, sums%volume(:, i)/max(length, tiny(length)), fits)
+      n = max(fits, 1)
+      if (fits < size(shape%radius)) values%flags(i) = values%flags(i) &
+         + merge(flag_smaller, flag_leaves, fits > 0)
+      j = sums%j(:, i)/length
+      associate (e => values%material(i))
+         a = velocity_functions(e, values%speed(i))
+         opening = opening_behind(crack, values%points, i, behind)
+         if (opening(1) < 0) values%flags(i) = values%flags(i) + flag_closed
+         opening(1) = max(opening(1), 0.0_wp)
+         do r = 1, n
+            k(:, r, 1) = split_rate(e, a, j(r), opening)
+            k(:, r, 2) = sums%interaction(:, r, i)/length*e%mu/velocity_functions(e, 0.0_wp)
+         end do
+      end associate
+      if (.not. opening(1) > 0) k(1, :, 2) = 0
+      if (values%speed(i) > 0) k(:, :, 2) = k(:, :, 1)
+      values%j(i) = j(n)
+      values%j_bar(:, i) = [minval(j(:n)), maxval(j(:n))]
+      values%k(:, i) = k(:, n, 1)
+      do r = 1, 3
+         values%k_bar(:, r, i) = [minval(k(r, :n, :)), maxval(k(r, :n, :))]
+      end do
+      values%radius(i) = shape%radius(n)
+      call judge(values, i)
+   end subroutine values_of_point
+
+   !> Number of radii, from the smallest on, whose domain is full of material.
+   pure subroutine count_fitting(shape, area, fits)
+      type(domain_shape_t), intent(in) :: shape
+      real(wp), intent(in) :: area(:)   !! found of w, over the plane normal to the front [length^2]
+      integer, intent(out) :: fits
+
+      do fits = 0, size(area) - 1
+         if (area(fits + 1) < (1 - volume_error) &
+            *plateau_area(shape%inner, shape%radius(fits + 1))) return
+      end do
+   end subroutine count_fitting
+
+   !> Kink angle and K* (eq. 57, 58).
+   pure subroutine judge(values, i)
+      type(front_values_t), intent(inout) :: values
+      integer, intent(in) :: i
+      type(hoop_stress_t) :: criterion
+      real(wp) :: twist
+
+      call criterion%judge(values%k(:, i), values%kink(i), twist, values%k_star(i))
+   end subroutine judge
+end module xmpm_front_values
