@@ -43,7 +43,7 @@ def add_arguments(parser):
         help="a node of the grid (default 0 0 0)",
     )
     parser.add_argument(
-        "--unit", choices=METRES, help="unit of length (default: of the STEP file, else mm)"
+        "--unit", choices=METRES, help="unit of length (default: of the STEP file, else m)"
     )
     parser.add_argument("--bodies", nargs="+", metavar="NAME", help="these bodies only")
     parser.add_argument("--sets", nargs="*", metavar="NAME", help="these sets only")
@@ -115,7 +115,7 @@ def unit_of(options, model):
             f"{options.model}: the file is in {model.unit}, --unit is {options.unit}: mixed units "
             f"(nothing is converted; give --h in {model.unit} and --unit {model.unit})"
         )
-    return model.unit or options.unit or "mm"
+    return model.unit or options.unit or "m"
 
 
 def check_model(options, model, unit):
