@@ -9,7 +9,7 @@ module xmpm_crack
    use xmpm_blocks, only: local_block, owner_of
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, attach, bin_of_chunk, n_near, near_crack, near_side, &
-      near_psi, near_phi, near_jump, near_slope, c_x
+      near_psi, near_phi, near_jump, near_slope, near_ahead, near_place, c_x
    use xmpm_linear_kernels, only: weights_linear
    use xmpm_gimp_kernels, only: weights_gimp
    use xmpm_sided, only: sided_t
@@ -17,14 +17,15 @@ module xmpm_crack
    use xmpm_surface, only: surface_t, refresh_geometry, fill_void
    use xmpm_surface_index, only: surface_index_t, nearest_t, build_index, refresh_index, &
       nearest_on_surface
-   use xmpm_front, only: front_t, front_test_points, mark_front, refresh_front, vertex_phi, &
-      beyond_reach
+   use xmpm_front, only: front_t, front_place_t, front_test_points, mark_front, refresh_front, &
+      vertex_phi, nearest_on_front, beyond_reach
    use xmpm_level_sets, only: level_sets_at
    use xmpm_ramp, only: jump_weight
    implicit none
    private
 
    public :: crack_t, start_crack, find_near, advance_crack, gather_crack, has_drifted, near_reach
+   public :: advance_ramp, replace_surface, weigh_vertices
    public :: rule_graded, rule_node, rule_full, rule_cut
 
    integer, parameter :: rule_graded = 1   !! H falls from 1 to 0 over a ramp at the front
@@ -44,6 +45,10 @@ module xmpm_crack
       integer :: rule = rule_graded              !! which nodes are split near the front
       real(wp) :: ramp = 0.5_wp                  !! length of the ramp [cells]
       real(wp) :: ramp_end = 0.4_wp              !! where it ends ahead of the front [cells]
+      real(wp), allocatable :: offset(:)         !! (nn) how far the crack has come past the front
+                                                 !! of
+                                                 !! the mesh, unallocated where it does not grow
+                                                 !! [length]
       logical, allocatable :: mine(:)            !! (nv) vertices that this rank moves
       logical, allocatable :: material(:)        !! (nv) whether there was mass around
       real(wp), allocatable :: weight(:)         !! (nv) H at the vertices
@@ -99,6 +104,7 @@ contains
    subroutine weigh_vertices(crack, h)
       type(crack_t), intent(inout) :: crack
       real(wp), intent(in) :: h   !! cell size [length]
+      type(front_place_t) :: place
       real(wp), allocatable :: phi(:)
       real(wp) :: slope(3)
       integer :: v
@@ -108,11 +114,55 @@ contains
       allocate (phi(crack%surface%vertex_count))
       call vertex_phi(crack%surface, crack%front, phi)
       do v = 1, size(phi)
+         if (allocated(crack%offset) .and. crack%front%edge_count > 0) then
+            call nearest_on_front(crack%front, crack%surface%x(:, v), beyond_reach, place)
+            phi(v) = phi(v) - offset_at(crack, place_code(place))
+         end if
          call jump_weight(1.0_wp, phi(v), [1.0_wp, 0.0_wp, 0.0_wp], crack%ramp*h, &
             crack%ramp_end*h, &
             crack%weight(v), slope)
       end do
    end subroutine weigh_vertices
+
+   !> A place of the front as one number: its edge plus part of it, 0 for none.
+   pure function place_code(place) result(code)
+      type(front_place_t), intent(in) :: place
+      real(wp) :: code
+
+      code = 0
+      if (place%edge > 0) code = real(place%edge, wp) + min(place%fraction, 0.9999999_wp)
+   end function place_code
+
+   !> How far the crack has come past the front of the mesh at a place.
+   pure function offset_at(crack, code) result(offset)
+      type(crack_t), intent(in) :: crack
+      real(wp), intent(in) :: code   !! of place_code
+      real(wp) :: offset             !! [length]
+      integer :: edge
+
+      offset = 0
+      edge = int(code)
+      if (edge == 0 .or. .not. allocated(crack%offset)) return
+      associate (node => crack%front%edge_node(:, edge), f => code - real(edge, wp))
+         offset = (1 - f)*crack%offset(node(1)) + f*crack%offset(node(2))
+      end associate
+   end function offset_at
+
+   !> Gradient of the offset: along the edge of the place.
+   pure function offset_slope(crack, code) result(slope)
+      type(crack_t), intent(in) :: crack
+      real(wp), intent(in) :: code   !! of place_code
+      real(wp) :: slope(3), t(3)
+      integer :: edge
+
+      slope = 0
+      edge = int(code)
+      if (edge == 0 .or. .not. allocated(crack%offset)) return
+      associate (node => crack%front%edge_node(:, edge))
+         t = crack%front%x(:, node(2)) - crack%front%x(:, node(1))
+         slope = (crack%offset(node(2)) - crack%offset(node(1)))/dot_product(t, t)*t
+      end associate
+   end function offset_slope
 
    !> Distance from the surface within which particles know the crack [length].
    pure function near_reach(lattice) result(reach)
@@ -160,14 +210,19 @@ contains
       type(particles_t), intent(inout) :: p
       type(error_t), allocatable, intent(out) :: error
       type(nearest_t) :: nearest
-      real(wp) :: x(3), psi, phi, e1(3), side, jump, slope(3)
+      type(front_place_t) :: place
+      real(wp) :: x(3), psi, phi, ahead, code, e1(3), side, jump, slope(3)
       integer :: i, at
 
       associate (near => p%near(:, :, p%attached(c)))
          do i = 1, p%count(c)
             x = p%q(i, c_x:c_x + 2, c)
             call nearest_on_surface(crack%index, crack%surface, x, 2*reach, nearest, hint)
-            call level_sets_at(crack%surface, crack%front, 2*reach, x, nearest, psi, phi, e1)
+            call level_sets_at(crack%surface, crack%front, 2*reach, x, nearest, psi, ahead, e1, &
+               place)
+            code = place_code(place)
+            phi = ahead - offset_at(crack, code)
+            e1 = e1 - offset_slope(crack, code)
             if (psi >= 0.5_wp*beyond_reach) cycle
             at = slot_for(near(i, :n_near*p%slots), number)
             if (at < 0) then
@@ -190,9 +245,70 @@ contains
             near(i, at + near_phi) = phi
             near(i, at + near_jump) = jump
             near(i, at + near_slope:at + near_slope + 2) = slope
+            near(i, at + near_ahead) = ahead
+            near(i, at + near_place) = code
          end do
       end associate
    end subroutine find_lanes
+
+   !> H of the particles near a front that has come further. Sides and places stay as they were
+   !> found; a side is fixed once the crack has passed its particle.
+   subroutine advance_ramp(crack, number, h, p, reached)
+      type(crack_t), intent(in) :: crack
+      integer, intent(in) :: number             !! of the crack
+      real(wp), intent(in) :: h                 !! cell size [length]
+      type(particles_t), intent(inout) :: p
+      logical, intent(out) :: reached           !! H is no more 0 somewhere
+      real(wp) :: phi, e1(3), before, ramp, ramp_end
+      integer :: c, i, k, edge
+
+      reached = .false.
+      ramp = crack%ramp*h
+      ramp_end = crack%ramp_end*h
+      do c = 1, p%n_chunks
+         if (p%count(c) == 0 .or. p%attached(c) == 0) cycle
+         associate (near => p%near(:, :, p%attached(c)))
+            do k = 0, n_near*(p%slots - 1), n_near
+               do i = 1, p%count(c)
+                  if (nint(near(i, k + near_crack)) /= number) cycle
+                  edge = int(near(i, k + near_place))
+                  if (edge == 0 .or. near(i, k + near_phi) < ramp_end - ramp) cycle
+                  phi = near(i, k + near_ahead) - offset_at(crack, near(i, k + near_place))
+                  near(i, k + near_phi) = phi
+                  if (crack%rule /= rule_graded .or. phi >= ramp_end) cycle
+                  e1 = crack%front%edge_e1(:, edge) - offset_slope(crack, near(i, k + near_place))
+                  before = near(i, k + near_jump)
+                  call jump_weight(near(i, k + near_side), phi, e1, ramp, ramp_end, &
+                     near(i, k + near_jump), near(i, k + near_slope:k + near_slope + 2))
+                  reached = reached .or. .not. abs(before) > 0
+               end do
+            end do
+         end associate
+      end do
+   end subroutine advance_ramp
+
+   !> Take a surface that growth has made, its vertices in the same order and new ones behind.
+   subroutine replace_surface(crack, surface, front, offset, rank, grid)
+      type(crack_t), intent(inout) :: crack
+      type(surface_t), intent(in) :: surface     !! with geometry
+      type(front_t), intent(in) :: front         !! its fronts
+      real(wp), intent(in) :: offset(:)          !! (nn) of its nodes [length]
+      integer, intent(in) :: rank
+      type(grid_t), intent(in) :: grid
+      integer :: n
+
+      n = surface%vertex_count - crack%surface%vertex_count
+      crack%surface = surface
+      crack%front = front
+      crack%offset = offset
+      call build_index(crack%surface, crack%index)
+      crack%material = [crack%material, spread(.true., 1, n)]
+      deallocate (crack%mine, crack%weight)
+      allocate (crack%weight(surface%vertex_count))
+      crack%evaluated = surface%x
+      call take_vertices(crack, rank, grid)
+      call weigh_vertices(crack, grid%lattice%size)
+   end subroutine replace_surface
 
    !> Where the slot of a crack begins, less one: its own, or a free one; -1 where none is free.
    pure function slot_for(near, number) result(at)

@@ -45,7 +45,7 @@ contains
    end subroutine evaluate_level_sets
 
    !> psi, phi and the direction ahead at one point whose nearest point of the surface is known.
-   pure subroutine level_sets_at(surface, front, reach, x, nearest, psi, phi, e1)
+   pure subroutine level_sets_at(surface, front, reach, x, nearest, psi, phi, e1, at)
       type(surface_t), intent(in) :: surface     !! mesh
       type(front_t), intent(in) :: front         !! its fronts
       real(wp), intent(in) :: reach              !! largest distance of interest [length]
@@ -54,6 +54,8 @@ contains
       real(wp), intent(out) :: psi               !! signed distance to the surface [length]
       real(wp), intent(out) :: phi               !! signed distance to the front [length]
       real(wp), intent(out) :: e1(3)             !! gradient of phi
+      type(front_place_t), intent(out), optional :: at   !! nearest place of the front, edge 0 where
+                                                         !! none is within reach
       type(front_place_t) :: place
 
       psi = beyond_reach
@@ -65,6 +67,7 @@ contains
       phi = fully_cracked
       if (front%edge_count == 0) return
       call locate_front(surface, front, reach, x, nearest, place)
+      if (present(at)) at = place
       if (place%edge == 0) return
       call distance_to_front(front, x, place, phi, e1)
       if (phi > 0.0_wp .and. .not. on_rim(surface, nearest)) phi = -place%distance
@@ -143,9 +146,23 @@ contains
          end if
          place%point = nearest%point
          place%distance = nearest%distance
+         if (place%edge > 0) place%fraction = fraction_of(front, place)
       end if
       if (place%edge == 0) call nearest_on_front(front, x, reach, place)
    end subroutine locate_front
+
+   !> How far along its edge a place is, 0 to 1.
+   pure function fraction_of(front, place) result(f)
+      type(front_t), intent(in) :: front
+      type(front_place_t), intent(in) :: place
+      real(wp) :: f, t(3)
+
+      associate (a => front%x(:, front%edge_node(1, place%edge)), &
+         b => front%x(:, front%edge_node(2, place%edge)))
+         t = b - a
+         f = max(0.0_wp, min(1.0_wp, dot_product(place%point - a, t)/dot_product(t, t)))
+      end associate
+   end function fraction_of
 
    !> Distance ahead of the nearest front point, and its gradient.
    !>

@@ -13,7 +13,8 @@ module xmpm_storage
    public :: count_particles, bin_of_chunk, read_record, take_records
    public :: record_t, new_record, renumber_blocks, attach
    public :: lanes, n_hot, c_x, c_v, c_m, c_vol, c_s
-   public :: n_near, near_crack, near_side, near_psi, near_phi, near_jump, near_slope
+   public :: n_near, near_crack, near_side, near_psi, near_phi, near_jump, near_slope, &
+      near_ahead, near_place
    public :: n_trace, trace_f, trace_work, is_traced
 
    integer, parameter :: lanes = 8      !! particles of a chunk
@@ -30,7 +31,11 @@ module xmpm_storage
    integer, parameter :: near_phi = 4     !! distance ahead of the front [length]
    integer, parameter :: near_jump = 5    !! H, from -1 to 1
    integer, parameter :: near_slope = 6   !! 6:8 gradient of H [1/length]
-   integer, parameter :: n_near = 8       !! values of a slot
+   integer, parameter :: near_ahead = 9   !! distance ahead of the front as it is in the mesh
+                                          !! [length]
+   integer, parameter :: near_place = 10  !! front edge plus part of it where the front is nearest,
+                                          !! 0 for none
+   integer, parameter :: n_near = 10      !! values of a slot
 
    integer, parameter :: trace_f = 1      !! 1:9 deformation gradient F_ij at 3 (i - 1) + j, all 0
                                           !! where the particle is not traced
@@ -57,7 +62,7 @@ module xmpm_storage
       integer, allocatable :: next(:)             !! (chunks) next chunk of the bin or free chain
       integer, allocatable :: attached(:)         !! (chunks) near record, 0 far from cracks
       integer, allocatable :: head(:, :)          !! (64,blocks) first chunk of each bin
-      real(wp), allocatable :: near(:, :, :)      !! (8,8*slots+10,records) crack slots of the
+      real(wp), allocatable :: near(:, :, :)      !! (8,10*slots+10,records) crack slots of the
                                                   !! lanes, and their trace where there is one
       integer, allocatable :: next_attached(:)    !! (records) chain of free near records
    end type particles_t
