@@ -69,8 +69,13 @@ def classify(surface: Surface, inside: Inside | None, h: float) -> np.ndarray:
 
 
 def find_fronts(surface: Surface, kind: np.ndarray, inside: Inside | None) -> list[Front]:
-    """Chains of front edges, each with its length inside the body."""
-    edges = free_edges(surface)[kind == FRONT]
+    """Chains of front edges, each with its length inside the body.
+
+    That length counts what the edges beyond an open end have inside, too.
+    """
+    free = free_edges(surface)
+    before, after = dict(free[:, ::-1].tolist()), dict(free.tolist())
+    edges = free[kind == FRONT]
     following = dict(edges.tolist())
     starts = sorted(set(following) - set(edges[:, 1].tolist()))
     chains = [(follow(following, start), False) for start in starts]
@@ -80,7 +85,11 @@ def find_fronts(surface: Surface, kind: np.ndarray, inside: Inside | None) -> li
     fronts = []
     for chain, closed in chains:
         front = Front(np.array(chain), closed, 0.0)
-        fronts.append(Front(front.vertices, closed, inner_length(surface, front.edges, inside)))
+        edges = front.edges
+        if not closed:
+            ends = [(before[chain[0]], chain[0]), (chain[-1], after[chain[-1]])]
+            edges = np.concatenate([edges, ends])
+        fronts.append(Front(front.vertices, closed, inner_length(surface, edges, inside)))
     return fronts
 
 

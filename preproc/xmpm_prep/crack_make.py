@@ -199,6 +199,8 @@ def lengthen(wish: Wish, surface: Surface, body: BodyShape | None, notes: list[s
         )
         return surface, kind
     surface = extend(surface, short, strip, wish.size)
+    if surface.angles.min() < wish.angle and not wish.keep:
+        surface = remesh(surface, wish.size)  # corners of strips may be sharp
     check_manifold(surface)
     check_intersection(surface)
     notes.append(f"a strip {strip:g} wide was added at {short.sum()} edges on the boundary")
