@@ -32,9 +32,9 @@ class Example:
 
 
 EXAMPLES = {
-    "plate-1": Example(("slit-1",), 2.0, 5.0, 2.0),
-    "plate-2": Example(("slit-1", "slit-2"), 2.0, 5.0, 2.0),
-    "plate-4": Example(("slit-1", "slit-2", "slit-3", "slit-4"), 2.0, 5.0, 2.0),
+    "plate-1": Example(("slit-1",), 2.0, 4.0, 2.0),
+    "plate-2": Example(("slit-1", "slit-2"), 2.0, 4.0, 2.0),
+    "plate-4": Example(("slit-1", "slit-2", "slit-3", "slit-4"), 2.0, 4.0, 2.0),
     "cylinder-penny": Example(("penny",), 2.0, 5.0, 1.0),
     "ellipse-bar": Example(("flaw",), 5.0, 10.0, 2.5, 2.0),
     "bending-2mm": Example(("notch",), 2.0, 5.0, 1.0),
