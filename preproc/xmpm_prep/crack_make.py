@@ -122,7 +122,7 @@ def choose_unit(wish: Wish, body: BodyShape | None) -> str:
                 "nothing is converted"
             )
         return body.unit
-    return wish.unit or "m"
+    return wish.unit or "mm"
 
 
 def check_scale(wish: Wish, surface: Surface, body: BodyShape | None) -> None:

@@ -254,8 +254,8 @@ def test_edges_outside_the_body_are_no_front(tmp_path):
     assert len(crack.fronts) == 2
     for front in crack.fronts:
         assert not front.closed
-        # Edges of 1 are measured in 200 parts.
-        assert front.length == pytest.approx(10.0, abs=0.01)
+        # At each end 1 / 200 of an edge of 1, and 1 % of a particle's cube of 0.5.
+        assert front.length == pytest.approx(10.0, abs=0.02)
         assert np.ptp(crack.surface.points[front.vertices][:, 0]) < 1e-9
     assert crack.unit == "mm"
 
@@ -268,7 +268,7 @@ def test_a_surface_that_ends_on_the_boundary_gets_a_strip_outside(tmp_path):
     # 1.5 cells beyond z = -5 and 5; along the front, so that x stays as it is.
     np.testing.assert_allclose([low[0], high[0]], [-8.0, 8.0], atol=1e-9)
     np.testing.assert_allclose([low[2], high[2]], [-6.5, 6.5], atol=1e-9)
-    assert [front.length for front in crack.fronts] == pytest.approx([10.0, 10.0], abs=0.01)
+    assert [front.length for front in crack.fronts] == pytest.approx([10.0, 10.0], abs=0.02)
     assert crack.surface.angles.min() > 20.0
     plain = make_crack(Wish(shape, 1.0, 1.0, body=body, strip=0.0))
     assert np.ptp(plain.surface.points[:, 2]) == pytest.approx(10.0)

@@ -26,7 +26,7 @@ def add_arguments(parser):
     add("--size", type=float, required=True, help="edge of the triangles")
     add("-o", "--output", metavar="FILE", required=True, help="the crack file (.h5)")
     add("--h", type=float, help="edge of the grid's cells (default: as --size)")
-    add("--unit", choices=METRES, help="unit of length (default: that of the body, else m)")
+    add("--unit", choices=METRES, help="unit of length (default: that of the body, else mm)")
     add("--name", help="physical surface to take from a file of gmsh")
     add("--body", metavar="FILE", help="particle file, geometry, mesh or closed STL of the body")
     add("--part", metavar="NAME", help="which body of that file")
