@@ -11,7 +11,7 @@ from xmpm_post import style
 from xmpm_post.errors import PostError
 from xmpm_post.run import Run
 
-PARTS = ("kinetic", "strain", "external", "damping", "plastic", "contact", "fracture")
+PARTS = ("kinetic", "strain", "external", "damping", "transfer", "plastic", "contact", "fracture")
 
 
 def draw_energy(run: Run, folder: Path, kind: str = "pdf") -> list[str]:
