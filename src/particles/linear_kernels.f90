@@ -5,6 +5,7 @@
 module xmpm_linear_kernels
    use xmpm_kinds, only: wp
    use xmpm_frame, only: frame_t
+   use xmpm_shuffle, only: turn, turn_4
    implicit none
    private
 
@@ -25,57 +26,103 @@ contains
       real(wp), intent(in) :: q(8, 14)            !! x v m vol s of the lanes
       type(frame_t), intent(in) :: frame          !! bin of the chunk
       real(wp), intent(inout) :: tile(8, *)     !! m, p, f of the tile's nodes
-      real(wp), dimension(8) :: tx, ty, tz, m, px, py, pz, s1, s2, s3, s4, s5, s6, vol
-      real(wp), dimension(8) :: am, ax, ay, az, fx, fy, fz
-      real(wp) :: wx, wy, wz, wyz, w, gx, gy, gz
+      real(wp) :: t(8, 3), m(8, 4), s(8, 6), values(8, 8), x, y, z, yz, xz, xy, w
+      real(wp), dimension(8) :: am, ax, ay, az, f11, f12, f13, f21, f22, f23, f31, f32, f33
       integer :: k, p
 
-      vol = q(:, 8)*frame%per_size
-      tx = (q(:, 1) - frame%corner(1))*frame%per_size
-      ty = (q(:, 2) - frame%corner(2))*frame%per_size
-      tz = (q(:, 3) - frame%corner(3))*frame%per_size
-      m = q(:, 7)
-      px = m*q(:, 4)
-      py = m*q(:, 5)
-      pz = m*q(:, 6)
-      s1 = vol*q(:, 9)
-      s2 = vol*q(:, 10)
-      s3 = vol*q(:, 11)
-      s4 = vol*q(:, 12)
-      s5 = vol*q(:, 13)
-      s6 = vol*q(:, 14)
+      call lane_products(q, frame, t, m, s)
       am = 0
       ax = 0
       ay = 0
       az = 0
-      fx = 0
-      fy = 0
-      fz = 0
+      f11 = 0
+      f12 = 0
+      f13 = 0
+      f21 = 0
+      f22 = 0
+      f23 = 0
+      f31 = 0
+      f32 = 0
+      f33 = 0
       do p = 1, n
-         !$omp simd private(wx, wy, wz, wyz, w, gx, gy, gz)
+         !$omp simd private(x, y, z, yz, xz, xy, w)
          do k = 1, 8
-            wx = ox(k) + sx(k)*tx(p)
-            wy = oy(k) + sy(k)*ty(p)
-            wz = oz(k) + sz(k)*tz(p)
-            wyz = wy*wz
-            w = wx*wyz
-            gx = sx(k)*wyz
-            gy = sy(k)*(wx*wz)
-            gz = sz(k)*(wx*wy)
-            am(k) = am(k) + w*m(p)
-            ax(k) = ax(k) + w*px(p)
-            ay(k) = ay(k) + w*py(p)
-            az(k) = az(k) + w*pz(p)
-            fx(k) = fx(k) - gx*s1(p) - gy*s4(p) - gz*s6(p)
-            fy(k) = fy(k) - gx*s4(p) - gy*s2(p) - gz*s5(p)
-            fz(k) = fz(k) - gx*s6(p) - gy*s5(p) - gz*s3(p)
+            x = ox(k) + sx(k)*t(p, 1)
+            y = oy(k) + sy(k)*t(p, 2)
+            z = oz(k) + sz(k)*t(p, 3)
+            yz = y*z
+            xz = x*z
+            xy = x*y
+            w = x*yz
+            am(k) = am(k) + w*m(p, 1)
+            ax(k) = ax(k) + w*m(p, 2)
+            ay(k) = ay(k) + w*m(p, 3)
+            az(k) = az(k) + w*m(p, 4)
+            f11(k) = f11(k) + yz*s(p, 1)
+            f12(k) = f12(k) + xz*s(p, 4)
+            f13(k) = f13(k) + xy*s(p, 6)
+            f21(k) = f21(k) + yz*s(p, 4)
+            f22(k) = f22(k) + xz*s(p, 2)
+            f23(k) = f23(k) + xy*s(p, 5)
+            f31(k) = f31(k) + yz*s(p, 6)
+            f32(k) = f32(k) + xz*s(p, 5)
+            f33(k) = f33(k) + xy*s(p, 3)
          end do
       end do
-      do k = 1, 8
-         p = frame%base + off(k)
-         tile(1:7, p) = tile(1:7, p) + [am(k), ax(k), ay(k), az(k), fx(k), fy(k), fz(k)]
-      end do
+      values(:, 1) = am
+      values(:, 2) = ax
+      values(:, 3) = ay
+      values(:, 4) = az
+      values(:, 5) = sx*f11 + sy*f12 + sz*f13
+      values(:, 6) = sx*f21 + sy*f22 + sz*f23
+      values(:, 7) = sx*f31 + sy*f32 + sz*f33
+      values(:, 8) = 0
+      call add_to_nodes(values, frame%base, tile)
    end subroutine scatter_linear
+
+   !> Add (node,value) to the nodes of a cell.
+   pure subroutine add_to_nodes(values, base, tile)
+      real(wp), intent(inout) :: values(8, 8)   !! left transposed
+      integer, intent(in) :: base
+      real(wp), intent(inout) :: tile(8, *)
+      integer :: i, k, p
+
+      call turn(values)
+      do k = 1, 8
+         p = base + off(k)
+         !$omp simd
+         do i = 1, 8
+            tile(i, p) = tile(i, p) + values(i, k)
+         end do
+      end do
+   end subroutine add_to_nodes
+
+   !> Place in the cell, mass and momentum, and minus volume times stress over h of the lanes.
+   pure subroutine lane_products(q, frame, t, m, s)
+      real(wp), intent(in) :: q(8, 14)
+      type(frame_t), intent(in) :: frame
+      real(wp), intent(out) :: t(8, 3), m(8, 4), s(8, 6)
+      real(wp) :: vol
+      integer :: p
+
+      !$omp simd private(vol)
+      do p = 1, 8
+         t(p, 1) = (q(p, 1) - frame%corner(1))*frame%per_size
+         t(p, 2) = (q(p, 2) - frame%corner(2))*frame%per_size
+         t(p, 3) = (q(p, 3) - frame%corner(3))*frame%per_size
+         m(p, 1) = q(p, 7)
+         m(p, 2) = q(p, 7)*q(p, 4)
+         m(p, 3) = q(p, 7)*q(p, 5)
+         m(p, 4) = q(p, 7)*q(p, 6)
+         vol = -frame%per_size*q(p, 8)
+         s(p, 1) = vol*q(p, 9)
+         s(p, 2) = vol*q(p, 10)
+         s(p, 3) = vol*q(p, 11)
+         s(p, 4) = vol*q(p, 12)
+         s(p, 5) = vol*q(p, 13)
+         s(p, 6) = vol*q(p, 14)
+      end do
+   end subroutine lane_products
 
    !> Add a vector of each particle to the nodes with the shape function's weight.
    pure subroutine push_linear(n, q, value, frame, tile)
@@ -85,8 +132,8 @@ contains
       type(frame_t), intent(in) :: frame          !! bin of the chunk
       real(wp), intent(inout) :: tile(4, *)   !! sums of the tile's nodes in 1:3
       real(wp), dimension(8) :: tx, ty, tz, ax, ay, az
-      real(wp) :: w
-      integer :: k, p
+      real(wp) :: w, values(8, 4), sums(4, 8)
+      integer :: k, p, f
 
       tx = (q(:, 1) - frame%corner(1))*frame%per_size
       ty = (q(:, 2) - frame%corner(2))*frame%per_size
@@ -94,6 +141,7 @@ contains
       ax = 0
       ay = 0
       az = 0
+      !GCC$ unroll 1
       do p = 1, n
          !$omp simd private(w)
          do k = 1, 8
@@ -103,9 +151,17 @@ contains
             az(k) = az(k) + w*value(p, 3)
          end do
       end do
+      values(:, 1) = ax
+      values(:, 2) = ay
+      values(:, 3) = az
+      values(:, 4) = 0
+      call turn_4(values, sums)
       do k = 1, 8
          p = frame%base + off(k)
-         tile(1:3, p) = tile(1:3, p) + [ax(k), ay(k), az(k)]
+         !$omp simd
+         do f = 1, 4
+            tile(f, p) = tile(f, p) + sums(f, k)
+         end do
       end do
    end subroutine push_linear
 
