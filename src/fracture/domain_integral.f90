@@ -193,7 +193,9 @@ contains
       real(wp), intent(in) :: s(6)
       real(wp) :: t(3, 3)
 
-      t = reshape([s(1), s(4), s(6), s(4), s(2), s(5), s(6), s(5), s(3)], [3, 3])
+      t(:, 1) = [s(1), s(4), s(6)]
+      t(:, 2) = [s(4), s(2), s(5)]
+      t(:, 3) = [s(6), s(5), s(3)]
    end function full
 
    !> t : e for a symmetric e given as 11 22 33 12 23 13.

@@ -122,7 +122,7 @@ contains
             s%mu = law%mu
          end select
          s%pull = pull(i, :)
-         s%rate = transpose(reshape(rate(i, :), [3, 3]))
+         s%rate = rows_of(rate(i, :))
          n = n + 1
          samples(n) = s
       end do
@@ -144,7 +144,7 @@ contains
             s%density = q(c_m)/q(c_vol)
             s%stress = q(c_s:c_s + 5)
             s%work = trace(trace_work)/q(c_vol)
-            s%back = inverse(transpose(reshape(trace(trace_f:trace_f + 8), [3, 3])))
+            s%back = inverse(rows_of(trace(trace_f:trace_f + 8)))
          end associate
          s%side = 0
          do k = 0, n_near*(p%slots - 1), n_near
@@ -152,6 +152,16 @@ contains
          end do
       end associate
    end subroutine read_lane
+
+   !> A matrix from its rows one after the other.
+   pure function rows_of(values) result(a)
+      real(wp), intent(in) :: values(9)
+      real(wp) :: a(3, 3)
+
+      a(1, :) = values(1:3)
+      a(2, :) = values(4:6)
+      a(3, :) = values(7:9)
+   end function rows_of
 
    !> Find the nearest point of the front; past its open ends the front goes on straight.
    pure subroutine place_sample(front, reach, s, inside)

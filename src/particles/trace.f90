@@ -33,18 +33,37 @@ contains
       real(wp), intent(in) :: gradient(lanes, 9)   !! L = dv_i/dx_j at 3 (i - 1) + j [1/time]
       real(wp), intent(in) :: dt                   !! [time]
       real(wp), intent(in) :: work(lanes)          !! done on the particles in this step [energy]
-      real(wp) :: l(3, 3), f(3, 3), lf(3, 3)
-      integer :: i
+      integer :: r
 
-      associate (trace => p%near(:, p%trace + 1:, p%attached(chunk)))
-         do i = 1, p%count(chunk)
-            l = dt*transpose(reshape(gradient(i, :), [3, 3]))
-            f = transpose(reshape(trace(i, trace_f:trace_f + 8), [3, 3]))
-            lf = matmul(l, f)
-            f = f + lf + 0.5_wp*matmul(l, lf)
-            trace(i, trace_f:trace_f + 8) = reshape(transpose(f), [9])
-            trace(i, trace_work) = trace(i, trace_work) + work(i)
-         end do
-      end associate
+      r = p%attached(chunk)
+      call follow_lanes(gradient, dt, p%near(:, p%trace + trace_f:p%trace + trace_f + 8, r))
+      p%near(:, p%trace + trace_work, r) = p%near(:, p%trace + trace_work, r) + work
    end subroutine follow_chunk
+
+   !> Deformation gradients of all lanes, column by column of F.
+   pure subroutine follow_lanes(l, dt, f)
+      real(wp), intent(in) :: l(lanes, 9), dt
+      real(wp), intent(inout) :: f(lanes, 9)
+      real(wp) :: a(lanes, 3), b(lanes, 3)
+      integer :: j, k
+
+      do j = 1, 3
+         call multiply(l, f(:, j), f(:, j + 3), f(:, j + 6), a)
+         call multiply(l, a(:, 1), a(:, 2), a(:, 3), b)
+         do k = 1, 3
+            f(:, 3*k - 3 + j) = f(:, 3*k - 3 + j) + dt*(a(:, k) + 0.5_wp*dt*b(:, k))
+         end do
+      end do
+   end subroutine follow_lanes
+
+   !> L x in all lanes.
+   pure subroutine multiply(l, x, y, z, product)
+      real(wp), intent(in) :: l(lanes, 9), x(lanes), y(lanes), z(lanes)
+      real(wp), intent(out) :: product(lanes, 3)
+      integer :: k
+
+      do k = 1, 3
+         product(:, k) = l(:, 3*k - 2)*x + l(:, 3*k - 1)*y + l(:, 3*k)*z
+      end do
+   end subroutine multiply
 end module xmpm_trace
