@@ -12,6 +12,7 @@ from xmpm_prep.crack_surface import Surface, drop_unused
 
 AHEAD = 0.3  # cells ahead of an edge where the program looks for material
 MARGIN = 0.5  # cells that a crack should reach beyond the boundary where it leaves the body
+CUTS = 4  # looks into a cell, along each edge
 SAMPLES = 200  # points along a front edge that measure how much of it lies inside
 FRONT, BOUNDARY, OUTSIDE = 0, 1, 2  # classes of free edges
 
@@ -68,6 +69,24 @@ def classify(surface: Surface, inside: Inside | None, h: float) -> np.ndarray:
     return kind
 
 
+def seen_as_front(surface: Surface, inside: Inside, h: float, origin: np.ndarray) -> np.ndarray:
+    """Whether the program would find material ahead of each free edge.
+
+    It looks into the whole cell of the grid around the place 0.3 cells ahead, or with GIMP into the
+    cube around the nearest node; either counts. A quarter of a cell is how finely we look.
+    """
+    middle = surface.points[free_edges(surface)].mean(axis=1)
+    place = (middle + AHEAD * h * ahead_of_edges(surface) - origin) / h
+    step = (np.arange(CUTS) + 0.5) / CUTS
+    grid = np.stack(np.meshgrid(step, step, step, indexing="ij"), axis=-1).reshape(-1, 3)
+    seen = np.zeros(len(place), dtype=bool)
+    for shift in (0.0, 0.5):
+        corner = np.floor(place - shift) + shift
+        points = origin + h * (corner[:, None] + grid)
+        seen |= inside(points.reshape(-1, 3)).reshape(len(place), -1).any(axis=1)
+    return seen
+
+
 def find_fronts(surface: Surface, kind: np.ndarray, inside: Inside | None) -> list[Front]:
     """Chains of front edges, each with its length inside the body.
 
@@ -91,6 +110,29 @@ def find_fronts(surface: Surface, kind: np.ndarray, inside: Inside | None) -> li
             edges = np.concatenate([edges, ends])
         fronts.append(Front(front.vertices, closed, inner_length(surface, edges, inside)))
     return fronts
+
+
+def tails(surface: Surface, fronts: list[Front]) -> np.ndarray:
+    """Whether free edges go on from the end of a front, outside, turning by less than 45 degrees.
+
+    To take them for a part of the front does no harm.
+    """
+    free = free_edges(surface)
+    arms = surface.points[free[:, 1]] - surface.points[free[:, 0]]
+    arms /= np.linalg.norm(arms, axis=1)[:, None]
+    found = np.zeros(len(free), dtype=bool)
+    for end in (1, 0):
+        number = dict(zip(free[:, 1 - end].tolist(), range(len(free)), strict=True))
+        last = dict(zip(free[:, end].tolist(), range(len(free)), strict=True))
+        for front in fronts:
+            if front.closed:
+                continue
+            edge = last[int(front.vertices[-end])]
+            following = number[int(free[edge, end])]
+            while arms[following] @ arms[edge] > np.cos(np.pi / 4) and not found[following]:
+                found[following] = True
+                edge, following = following, number[int(free[following, end])]
+    return found
 
 
 def follow(following: dict[int, int], start: int) -> list[int]:

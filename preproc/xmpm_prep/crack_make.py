@@ -7,7 +7,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from xmpm_prep.crack_body import BodyShape, read_body
-from xmpm_prep.crack_front import BOUNDARY, FRONT, OUTSIDE, Front, classify, extend, find_fronts
+from xmpm_prep.crack_front import (
+    BOUNDARY,
+    FRONT,
+    OUTSIDE,
+    Front,
+    classify,
+    extend,
+    find_fronts,
+    seen_as_front,
+    tails,
+)
 from xmpm_prep.crack_intersect import check_intersection
 from xmpm_prep.crack_mesh import MOST, mesh_surfaces
 from xmpm_prep.crack_read import read_surface
@@ -20,7 +30,7 @@ from xmpm_prep.crack_surface import (
     parts,
     remove_faulty_triangles,
 )
-from xmpm_prep.errors import PrepError, doubt
+from xmpm_prep.errors import PrepError, doubt, warn
 from xmpm_prep.units import METRES
 
 LEAST_ANGLE = 20.0  # of a triangle, where not asked for otherwise [degrees]
@@ -38,6 +48,7 @@ class Wish:
     body: object = None  # path of a particle file or a model
     part: str | None = None  # body in that file
     unit: str | None = None  # of length
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)  # a node of the grid
     keep: bool = False  # take the triangles as they are
     turn: bool = False  # the plus side becomes the minus side
     strip: float | None = None  # width of the strips outside the body; 0 for none [length]
@@ -78,6 +89,9 @@ def make_crack(wish: Wish) -> Crack:
             f"{box(body.low, body.high)}"
         )
     fronts = find_fronts(surface, kind, inside)
+    if body:
+        seen = seen_as_front(surface, inside, wish.h, np.array(wish.origin, dtype=float))
+        warn_of_seen(seen & (kind != FRONT) & ~tails(surface, fronts), notes)
     crack = Crack(surface, kind, fronts, unit, body is not None, notes)
     check_fronts(wish, crack)
     return crack
@@ -215,6 +229,17 @@ def crosses_body(surface: Surface, body: BodyShape) -> bool:
     if body.inside(surface.corners.mean(axis=1)).any():
         return True
     return bool(body.inside(surface.points[near]).any())
+
+
+def warn_of_seen(wrong: np.ndarray, notes: list[str]) -> None:
+    """Edges outside the body that the program would still take for fronts."""
+    if wrong.any():
+        warn(
+            f"{wrong.sum()} edges outside the body have material in the cell ahead of them; the "
+            "program will take them for fronts: let the crack reach further out of the body, or "
+            "widen its --strip"
+        )
+        notes.append(f"{wrong.sum()} edges outside the body will be taken for fronts")
 
 
 def check_fronts(wish: Wish, crack: Crack) -> None:

@@ -272,7 +272,20 @@ def test_a_surface_that_ends_on_the_boundary_gets_a_strip_outside(tmp_path):
     assert crack.surface.angles.min() > 20.0
     plain = make_crack(Wish(shape, 1.0, 1.0, body=body, strip=0.0))
     assert np.ptp(plain.surface.points[:, 2]) == pytest.approx(10.0)
-    assert "on the boundary" in plain.notes[-1]
+    assert any("on the boundary" in note for note in plain.notes)
+
+
+def test_edges_that_the_program_would_take_for_fronts_are_told(tmp_path, capsys):
+    # Cells of 2 hold material up to z = 6; the crack ends at 5.2, 0.2 outside, plus 0.6 ahead.
+    body = block_of_particles(tmp_path / "body.h5", [-20, -10, -5], [20, 10, 5])
+    shape = Shape("plane", along=(1, 0, 0), across=(0, 0, 1), width=16.0, depth=10.4)
+    wish = Wish(shape, 1.0, 2.0, body=body, strip=0.0)
+    crack = make_crack(wish)
+    assert "will be taken for fronts" in crack.notes[-1]
+    assert "widen its --strip" in capsys.readouterr().err
+    whole = make_crack(Wish(shape, 1.0, 2.0, body=body))
+    assert not any("taken for fronts" in note for note in whole.notes)
+    assert capsys.readouterr().err == ""
 
 
 def test_a_crack_all_through_has_no_front(tmp_path):

@@ -26,6 +26,14 @@ def add_arguments(parser):
     add("--size", type=float, required=True, help="edge of the triangles")
     add("-o", "--output", metavar="FILE", required=True, help="the crack file (.h5)")
     add("--h", type=float, help="edge of the grid's cells (default: as --size)")
+    add(
+        "--origin",
+        type=float,
+        nargs=3,
+        default=(0.0, 0.0, 0.0),
+        metavar=("X", "Y", "Z"),
+        help="a node of the grid (default 0 0 0)",
+    )
     add("--unit", choices=METRES, help="unit of length (default: that of the body, else mm)")
     add("--name", help="physical surface to take from a file of gmsh")
     add("--body", metavar="FILE", help="particle file, geometry, mesh or closed STL of the body")
@@ -82,15 +90,16 @@ def run(options):
         source,
         options.size,
         options.h or options.size,
-        options.name,
-        options.body,
-        options.part,
-        options.unit,
-        options.keep,
-        options.turn,
-        options.strip,
-        options.min_angle,
-        options.force,
+        name=options.name,
+        body=options.body,
+        part=options.part,
+        unit=options.unit,
+        origin=options.origin,
+        keep=options.keep,
+        turn=options.turn,
+        strip=options.strip,
+        angle=options.min_angle,
+        force=options.force,
     )
     crack = make_crack(wish)
     write_crack(options.output, crack.surface, crack.fronts, crack.unit)
