@@ -173,16 +173,23 @@ contains
    end function near_reach
 
    !> Level sets and H of all particles near the crack. A side, once given behind the front, stays.
-   subroutine find_near(crack, number, grid, p, error)
+   !>
+   !> With `grown` only those near the fronts: what growth has changed.
+   subroutine find_near(crack, number, grid, p, error, grown)
       type(crack_t), intent(inout) :: crack
       integer, intent(in) :: number                       !! of the crack
       type(grid_t), intent(in) :: grid
       type(particles_t), intent(inout) :: p
       type(error_t), allocatable, intent(out) :: error    !! too many cracks near a particle
+      logical, intent(in), optional :: grown
       type(nearest_t) :: nearest
       real(wp) :: low(3), high(3), centre(3), reach, half
       integer :: c, hint
+      logical :: ahead_only
 
+      ahead_only = .false.
+      if (present(grown)) ahead_only = grown
+      call forget_places(number, p)
       half = 0.5_wp*grid%lattice%size
       reach = near_reach(grid%lattice) + sqrt(3.0_wp)*half
       low = minval(crack%surface%x, dim=2) - reach
@@ -192,6 +199,9 @@ contains
          if (p%count(c) == 0) cycle
          centre = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) + half
          if (any(centre < low) .or. any(centre > high)) cycle
+         if (ahead_only) then
+            if (.not. beside_front(crack, centre, reach + 2*grid%lattice%size)) cycle
+         end if
          call nearest_on_surface(crack%index, crack%surface, centre, reach, nearest, hint)
          hint = nearest%triangle
          if (hint == 0) cycle
@@ -201,6 +211,32 @@ contains
       end do
       crack%evaluated = crack%surface%x
    end subroutine find_near
+
+   pure function beside_front(crack, x, reach) result(is)
+      type(crack_t), intent(in) :: crack
+      real(wp), intent(in) :: x(3), reach
+      logical :: is
+      type(front_place_t) :: place
+
+      call nearest_on_front(crack%front, x, reach, place)
+      is = place%edge > 0
+   end function beside_front
+
+   !> Places of an older front are none of the present one.
+   subroutine forget_places(number, p)
+      integer, intent(in) :: number             !! of the crack
+      type(particles_t), intent(inout) :: p
+      integer :: c, k
+
+      do c = 1, p%n_chunks
+         if (p%count(c) == 0 .or. p%attached(c) == 0) cycle
+         associate (near => p%near(:, :, p%attached(c)))
+            do k = 0, n_near*(p%slots - 1), n_near
+               where (nint(near(:, k + near_crack)) == number) near(:, k + near_place) = 0
+            end do
+         end associate
+      end do
+   end subroutine forget_places
 
    !> Level sets and H of one chunk.
    subroutine find_lanes(crack, number, h, reach, hint, p, c, error)
@@ -442,6 +478,7 @@ contains
       call refresh_index(crack%surface, crack%index)
       call refresh_front(crack%surface, crack%front)
       call take_vertices(crack, comm%rank, grid)
+      if (allocated(crack%offset)) call weigh_vertices(crack, grid%lattice%size)
    end subroutine gather_crack
 
    !> Whether the surface has turned or strained so much that level sets must be found again.

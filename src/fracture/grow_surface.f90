@@ -25,8 +25,10 @@ module xmpm_grow_surface
                                                !! vertex came to be; a node of it that stayed has
                                                !! itself twice, others 0
       real(wp), allocatable :: share(:)        !! (nv) part of the second of them
+      integer :: old_vertices = 0              !! vertices that were there before
       type(mesh_quality_t) :: quality          !! of the new triangles
-      integer :: waiting = 0                   !! nodes that wait for another front of the crack
+      logical, allocatable :: met(:)           !! (old nn) nodes that wait for another front of the
+                                               !! crack
       integer :: joined = 0                    !! pairs of fronts that were joined, and closed rests
    end type grown_t
 
@@ -80,7 +82,8 @@ contains
             call grow_chain(front, chain, advance, stays, limits, material, draft)
          end if
       end do
-      grown%waiting = count(partner > 0)
+      grown%met = partner > 0
+      grown%old_vertices = surface%vertex_count
       call finish_draft(surface, draft, grown, error)
       if (allocated(error)) return
       call check_new_triangles(grown%surface, surface%triangle_count + 1, grown%quality, error)

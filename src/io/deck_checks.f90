@@ -6,6 +6,7 @@ module xmpm_deck_checks
    use xmpm_deck_data, only: deck_t, block_t, entry_t, has, given, valid, real_of, reals_of, &
       text_of, texts_of, complain, warn, count_blocks, find_block, add_entry
    use xmpm_deck_units, only: si_factor, sound_speed
+   use xmpm_deck_growth, only: check_growth
    use xmpm_deck_cracks, only: check_crack, check_symmetry_planes
    use xmpm_deck_choices, only: exactly_one, refuse
    use xmpm_deck_references, only: resolve, resolve_list
@@ -41,6 +42,7 @@ contains
          case ('relax'); call check_relax(deck, block)
          case ('output'); call check_output(deck, block)
          case ('fracture'); call check_fracture(deck, block)
+         case ('growth'); call check_growth(deck, block)
          case ('probe'); call check_probe(deck, block)
          end select
          deck%blocks(i) = block

@@ -72,7 +72,7 @@ contains
       call add_key(t, key_t(name='poisson', range='(-1, 0.5)', required=.true., &
          meaning='Poisson''s ratio'))
       call add_key(t, key_t(name='toughness', dimension='toughness', range=positive, &
-         meaning='fracture toughness K_Ic; not used yet, for cracks do not grow'))
+         meaning='fracture toughness K_Ic, for cracks that grow'))
 
       call add_keyword(t, keyword_t(name='body', naming=must_have_name, required=.true., &
          repeatable=.true., &
@@ -312,6 +312,8 @@ contains
          meaning='distance behind the front of the openings that part the modes; 2 cells where '// &
          'not given'))
 
+      call add_growth(t)
+
       call add_keyword(t, keyword_t(name='probe', naming=must_have_name, repeatable=.true., &
          meaning='a quantity written over time: at a point, through a section or from a boundary'))
       call add_key(t, key_t(name='point', least=3, most=3, dimension='length', &
@@ -323,4 +325,36 @@ contains
       call add_key(t, key_t(name='reaction', kind=kind_text, &
          meaning='name of a *BOUNDARY whose force is written'))
    end subroutine add_results
+
+   !> Growth of cracks.
+   pure subroutine add_growth(t)
+      type(keyword_t), allocatable, intent(inout) :: t(:)
+
+      call add_keyword(t, keyword_t(name='growth', repeatable=.true., &
+         meaning='growth of cracks: where to, how fast, from when'))
+      call add_key(t, key_t(name='cracks', kind=kind_text, most=any_number, &
+         meaning='names of the *CRACK blocks; all where not given'))
+      call add_key(t, key_t(name='criterion', kind=kind_word, default='hoop', &
+         words='hoop schoellmann straight', &
+         meaning='direction and K*: largest hoop stress, largest principal stress, or the plane'))
+      call add_key(t, key_t(name='law', kind=kind_word, default='running', &
+         words='running constant table speed position', &
+         meaning='speed: K_Ic/(1 - C/C_R), constant K_Ic, table of K_ID, or prescribed'))
+      call add_key(t, key_t(name='table', least=4, most=any_number, &
+         meaning='law = table: speed and K_ID, pair after pair; law = position: time and way'))
+      call add_key(t, key_t(name='speed', dimension='velocity', range=not_negative, &
+         meaning='law = speed: of every point of the fronts'))
+      call add_key(t, key_t(name='start', dimension='time', range=not_negative, default='0', &
+         meaning='no growth before this time'))
+      call add_key(t, key_t(name='increment', range='[0.1, 2]', default='0.5', &
+         meaning='way after which the surface gets new triangles, in cells'))
+      call add_key(t, key_t(name='filter', dimension='time', range=not_negative, &
+         meaning='time over which K is averaged; 3.5 cells at the fastest wave where not given'))
+      call add_key(t, key_t(name='every', dimension='time', range=positive, &
+         meaning='interval of K for the law; 0.5 cells at the fastest wave where not given'))
+      call add_key(t, key_t(name='toughness', dimension='toughness', range=positive, &
+         meaning='K_Ic for these cracks in all bodies, instead of those of the materials'))
+      call add_key(t, key_t(name='region', least=7, most=7, repeatable=.true., &
+         meaning='a box of its own toughness: x0 y0 z0 x1 y1 z1 K_Ic; the last one counts'))
+   end subroutine add_growth
 end module xmpm_keywords_table

@@ -75,6 +75,7 @@ contains
          balance%external = sums(3)
          balance%damping = sums(4)
          balance%transfer = sums(5)
+         if (allocated(m%growth)) balance%fracture = sum(m%growth%energy)
          balance%error = sums(1) - l%kinetic_start + sums(2) + sums(4) + sums(5) - sums(3)
          l%largest = max(l%largest, sums(1), abs(sums(2)), abs(sums(3)), l%kinetic_start)
          balance%relative_error = 0

@@ -18,6 +18,7 @@ module xmpm_model
    use xmpm_curves, only: curve_t
    use xmpm_crack, only: crack_t
    use xmpm_fracture, only: fracture_t
+   use xmpm_growth, only: growth_t
    implicit none
    private
 
@@ -70,6 +71,7 @@ module xmpm_model
       type(sided_t) :: sided
       type(crack_t), allocatable :: cracks(:)
       type(fracture_t) :: fracture            !! what is wanted at the fronts, and the last values
+      type(growth_t), allocatable :: growth(:)   !! of the cracks that grow
       type(load_t), allocatable :: loads(:)
       type(gravity_t), allocatable :: gravity(:)
       type(boundary_t), allocatable :: boundaries(:)

@@ -5,7 +5,7 @@ module xmpm_run
    use xmpm_error, only: error_t, raise, code_numerics
    use xmpm_deck, only: deck_t
    use xmpm_stage_clock, only: start_stage, stop_stage, stage_output
-   use xmpm_log, only: log_t, log_warning
+   use xmpm_log, only: log_t, log_message, log_warning
    use xmpm_progress, only: progress_t, run_state_t, start_progress, count_step, progress_due, &
       report_progress
    use xmpm_balance, only: balance_t
@@ -13,6 +13,7 @@ module xmpm_run
    use xmpm_stages, only: measure_fronts
    use xmpm_ledger, only: take_balance
    use xmpm_settle, only: settle, choose_step
+   use xmpm_grow_cracks, only: judge_fronts
    use xmpm_relax, only: relax
    use xmpm_fracture, only: fracture_t
    use xmpm_model, only: model_t
@@ -57,8 +58,10 @@ contains
          if (m%time >= m%options%end_time .or. m%step >= int(m%options%most_steps, i8)) exit
          call choose_step(m, m%options%end_time, error)
          if (allocated(error)) exit
+         call judge_fronts(m)
          call m%take_step(m, m%dt)
          call settle(m, error)
+         call tell_growth(m, log)
          if (allocated(error)) exit
          call write_due(m, results, agenda, is_last(m), error)
          call watch_energy(m, agenda, log, error)
@@ -68,6 +71,23 @@ contains
       call report_progress(progress, log, state_of(m, agenda), last=.true.)
       if (allocated(error)) call write_fields(results, m, late)
    end subroutine run_model
+
+   !> Tell the log what the growth of cracks has met.
+   subroutine tell_growth(m, log)
+      type(model_t), intent(inout) :: m
+      type(log_t), intent(inout) :: log
+      integer :: g, i
+
+      if (.not. allocated(m%growth)) return
+      do g = 1, size(m%growth)
+         do i = 1, size(m%growth(g)%news)
+            call log_message(log, m%growth(g)%news(i)%s)
+         end do
+         if (size(m%growth(g)%news) == 0) cycle
+         deallocate (m%growth(g)%news)
+         allocate (m%growth(g)%news(0))
+      end do
+   end subroutine tell_growth
 
    pure function is_last(m) result(last)
       type(model_t), intent(in) :: m

@@ -13,6 +13,7 @@ module xmpm_settle
    use xmpm_boundary, only: find_rows
    use xmpm_crack, only: gather_crack, has_drifted, find_near, rule_graded
    use xmpm_split, only: split_nodes
+   use xmpm_grow_cracks, only: grow_cracks
    use xmpm_ledger, only: note_energies
    use xmpm_layout, only: admit_blocks, repartition, count_unknown
    use xmpm_model, only: model_t
@@ -67,6 +68,8 @@ contains
       call keep_balance(m, shared_anew, error)
       if (allocated(error)) return
       m%split_again = m%split_again .or. worst(6) > 0 .or. (worst(4) > 0 .and. size(m%cracks) > 0)
+      call grow_cracks(m, error)
+      if (allocated(error)) return
       call keep_cracks(m, worst(8) > 0 .or. worst(5) > 0 .or. shared_anew, error)
       if (mod(m%step, wave_interval) == 0) call find_wave_speed(m)
    end subroutine settle

@@ -19,6 +19,7 @@ module xmpm_setup
    use xmpm_setup_conditions, only: set_up_conditions
    use xmpm_setup_cracks, only: read_cracks
    use xmpm_setup_fracture, only: set_up_fracture
+   use xmpm_setup_growth, only: set_up_growth
    use xmpm_ledger, only: start_ledger
    use xmpm_model, only: model_t
    implicit none
@@ -57,6 +58,7 @@ contains
          call start_crack(m%cracks(i), m%comm, m%grid, m%particles)
       end do
       call set_up_fracture(m, deck)
+      call set_up_growth(m, deck)
       call problems(deck, error)
       call agree_on_error(m%comm, error)
       if (allocated(error)) return

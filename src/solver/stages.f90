@@ -297,13 +297,18 @@ contains
    subroutine measure_fronts(m)
       type(model_t), intent(inout) :: m
       real(wp), allocatable :: speed(:)
-      integer :: i
+      integer :: i, k
 
       call map_to_grid(m)
       m%mapped = .true.
       call start_stage(m%clock, stage_fracture)
       do i = 1, size(m%fracture%cracks)
          allocate (speed(m%cracks(m%fracture%cracks(i))%front%node_count), source=0.0_wp)
+         if (allocated(m%growth)) then
+            do k = 1, size(m%growth)
+               if (m%growth(k)%crack == m%fracture%cracks(i)) speed = m%growth(k)%speed
+            end do
+         end if
          call measure_front(m%fracture, i, m%cracks, m%comm, m%grid, m%particles, m%bodies, &
             m%kernels, m%sided, m%loads, m%time, speed)
          deallocate (speed)
