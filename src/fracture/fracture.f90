@@ -17,6 +17,7 @@ module xmpm_fracture
    use xmpm_crack, only: crack_t, gather_crack
    use xmpm_near_tip, only: strain_of
    use xmpm_samples, only: sample_t, collect_samples
+   use xmpm_material_drift, only: drift_sums, drift_of
    use xmpm_front_points, only: list_points, end_points, front_points_t
    use xmpm_domain_integral, only: domain_shape_t, domain_sums_t, clear_sums, sum_domains
    use xmpm_front_values, only: front_values_t, clear_values, find_values, flag_other
@@ -158,31 +159,20 @@ contains
       t = unit_vector(end - front%x(:, inner))
    end subroutine end_of_chain
 
-   !> Velocity of the material at moving points: the mean of the particles within the inner radius
-   !> of a domain. Collective.
+   !> Velocity of the material at moving points. Collective.
    function drift_at(samples, points, speed, comm) result(drift)
       type(sample_t), intent(in) :: samples(:)
       type(front_points_t), intent(in) :: points
       real(wp), intent(in) :: speed(:)
       type(comm_t), intent(in) :: comm
       real(wp) :: drift(3, points%n)
-      real(wp) :: sums(4, points%n), reach
-      integer :: i, m
+      real(wp) :: sums(4, points%n)
 
       drift = 0
       if (.not. any(speed > 0)) return
-      sums = 0
-      do m = 1, points%n
-         do i = 1, size(samples)
-            reach = 2*samples(i)%volume**(1/3.0_wp)
-            if (norm2(samples(i)%x - points%x(:, m)) > 2*reach) cycle
-            sums(:, m) = sums(:, m) + samples(i)%volume*[samples(i)%v, 1.0_wp]
-         end do
-      end do
+      sums = drift_sums(samples, points, speed)
       call sum_all(comm, sums)
-      do m = 1, points%n
-         if (sums(4, m) > 0) drift(:, m) = sums(:3, m)/sums(4, m)
-      end do
+      drift = drift_of(sums)
    end function drift_at
 
    subroutine sum_over_ranks(comm, sums)

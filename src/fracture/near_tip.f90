@@ -12,7 +12,8 @@ contains
    !> Stress and u_i,1 of the three modes at a point, each for an intensity factor of one.
    !>
    !> Williams' series, first term (for example Anderson, Fracture Mechanics, tables 2.1 and 2.2).
-   !> Behind the front the side, not the sign of x2, tells which face is near.
+   !> Behind the front the side, not the sign of x2, tells which face is near. On the front itself
+   !> there is no field: 0.
    pure subroutine near_tip_fields(x1, x2, side, mu, poisson, stress, gradient)
       real(wp), intent(in) :: x1, x2          !! ahead of and above the front [length]
       real(wp), intent(in) :: side            !! 1 above, -1 below the crack
@@ -21,7 +22,10 @@ contains
       real(wp), intent(out) :: gradient(3, 3) !! u_i,1 of the modes
       real(wp) :: r, cosine, sine, c, s, c3, s3, f, kappa, scale
 
+      stress = 0
+      gradient = 0
       r = sqrt(x1*x1 + x2*x2)
+      if (.not. r > 0) return
       cosine = x1/r
       sine = x2/r
       if (cosine > 0) then
@@ -35,8 +39,6 @@ contains
       s3 = s*(3 - 4*s*s)
       f = 1/sqrt(2*pi*r)
       kappa = 3 - 4*poisson
-      stress = 0
-      gradient = 0
       stress(1, 1:2) = [f*c*(1 - s*s3), -f*s*(2 + c*c3)]
       stress(2, 1:2) = [f*c*(1 + s*s3), f*s*c*c3]
       stress(3, 1:2) = poisson*(stress(1, 1:2) + stress(2, 1:2))

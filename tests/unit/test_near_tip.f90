@@ -124,6 +124,9 @@ contains
       call near_tip_fields(1.0_wp, 0.3_wp, -1.0_wp, mu, poisson, s(:, :, 2), g(:, :, 2))
       call check_close(suite, 'ahead of the front', maxval(abs(s(:, :, 1) - s(:, :, 2))), 0.0_wp, &
          0.0_wp, 0.0_wp)
+      call near_tip_fields(0.0_wp, 0.0_wp, 1.0_wp, mu, poisson, s(:, :, 1), g(:, :, 1))
+      call check(suite, 'a particle on the front counts nothing', &
+         .not. (any(abs(s(:, :, 1)) > 0) .or. any(abs(g(:, :, 1)) > 0)))
    end subroutine branch
 
    !> K is s_22, s_12, s_23 (2 pi r)**(1/2) ahead of the front.
