@@ -5,31 +5,39 @@
 module xmpm_gimp_kernels
    use xmpm_kinds, only: wp
    use xmpm_frame, only: frame_t
+   use xmpm_shuffle, only: turn
    implicit none
    private
 
    public :: scatter_gimp, push_gimp, gather_gimp, gradient_gimp, weights_gimp
 
    integer, parameter :: width = 6   !! nodes of a tile along one direction
+   real(wp), parameter :: is_v(8) = real([1, 1, 1, 1, 0, 0, 0, 0], &
+      wp)   !! mass and momentum of a node
+   real(wp), parameter :: is_f(8) = 1 - is_v                           !! its force
    integer, parameter :: second(9) = [1, 2, 3, 1, 2, 3, 1, 2, 3]   !! y node of each line
    integer, parameter :: third(9) = [1, 1, 1, 2, 2, 2, 3, 3, 3]    !! z node of each line
 
 contains
 
-   !> Weights and slopes (per cell) of the three nodes in one direction.
-   elemental subroutine weigh(t, half, w1, w2, w3, d1, d2, d3)
+   !> Weights and slopes (per cell) of the three nodes in one direction: how far the particle
+   !> reaches
+   !> below and above the middle node, and what of that lies beyond its own width.
+   elemental subroutine weigh(t, half, scale, w1, w2, w3, d1, d2, d3)
       real(wp), intent(in) :: t, half
+      real(wp), intent(in) :: scale   !! 1/(2 half)
       real(wp), intent(out) :: w1, w2, w3, d1, d2, d3
-      real(wp) :: below, above, scale
+      real(wp) :: below, above, low, high
 
-      scale = 0.5_wp/half
-      below = min(max(half - t, 0.0_wp), 2*half)
-      above = min(max(half + t, 0.0_wp), 2*half)
-      d1 = -below*scale
-      d3 = above*scale
+      below = max(half - t, 0.0_wp)
+      above = max(half + t, 0.0_wp)
+      low = min(below, 2*half)
+      high = min(above, 2*half)
+      d1 = -low*scale
+      d3 = high*scale
       d2 = -(d1 + d3)
-      w1 = 0.5_wp*below*below*scale + max(-t - half, 0.0_wp)
-      w3 = 0.5_wp*above*above*scale + max(t - half, 0.0_wp)
+      w1 = below - low - 0.5_wp*low*d1
+      w3 = above - high + 0.5_wp*high*d3
       w2 = 1 - w1 - w3
    end subroutine weigh
 
@@ -39,14 +47,16 @@ contains
       type(frame_t), intent(in) :: frame
       real(wp), intent(out) :: w(8, 3, 3)   !! (lane, node, direction)
       real(wp), intent(out) :: d(8, 3, 3)   !! (lane, node, direction) [1/cell]
-      real(wp) :: t
+      real(wp) :: t, scale
       integer :: i, p
 
+      scale = 0.5_wp/frame%half
       do i = 1, 3
          !$omp simd private(t)
          do p = 1, 8
             t = (q(p, i) - frame%corner(i))*frame%per_size - 0.5_wp
-            call weigh(t, frame%half, w(p, 1, i), w(p, 2, i), w(p, 3, i), d(p, 1, i), d(p, 2, i), &
+            call weigh(t, frame%half, scale, w(p, 1, i), w(p, 2, i), w(p, 3, i), d(p, 1, i), &
+               d(p, 2, i), &
                d(p, 3, i))
          end do
       end do
@@ -58,18 +68,30 @@ contains
       real(wp), intent(in) :: q(8, 14)            !! x v m vol s of the lanes
       type(frame_t), intent(in) :: frame          !! bin of the chunk
       real(wp), intent(inout) :: tile(8, *)     !! m, p, f of the tile's nodes
-      real(wp) :: w(8, 3, 3), d(8, 3, 3), v(8, 8), ex(8, 8), ey(8, 8), ez(8, 8), vol(8)
-      real(wp) :: xc(8), yc(8), zc(8), bb, cc, wb, db
+      real(wp) :: w(8, 3, 3), d(8, 3, 3), vx(8, 8), y(8, 8), z(8, 8)
+      real(wp), dimension(8) :: w1, w2, w3, x1, x2, x3, xc, yc, zc
+      real(wp) :: bb, cc, wb, db
       integer :: p, b, c, r, f
 
       call weigh_lanes(q, frame, w, d)
-      vol = -q(:, 8)*frame%per_size
-      call lay_out(q, vol, v, ex, ey, ez)
+      call lay_out(q, frame%per_size, vx, y, z)
       do p = 1, n
+         !$omp simd
+         do f = 1, 8
+            w1(f) = w(p, 1, 1)
+            w2(f) = w(p, 2, 1)
+            w3(f) = w(p, 3, 1)
+            x1(f) = is_v(f)*w(p, 1, 1) + is_f(f)*d(p, 1, 1)
+            x2(f) = is_v(f)*w(p, 2, 1) + is_f(f)*d(p, 2, 1)
+            x3(f) = is_v(f)*w(p, 3, 1) + is_f(f)*d(p, 3, 1)
+         end do
          do c = 1, 3
-            xc = w(p, c, 3)*ex(:, p)
-            yc = w(p, c, 3)*ey(:, p)
-            zc = w(p, c, 3)*v(:, p) + d(p, c, 3)*ez(:, p)
+            !$omp simd
+            do f = 1, 8
+               xc(f) = w(p, c, 3)*vx(f, p)
+               yc(f) = w(p, c, 3)*y(f, p)
+               zc(f) = d(p, c, 3)*z(f, p)
+            end do
             do b = 1, 3
                wb = w(p, b, 2)
                db = d(p, b, 2)
@@ -78,37 +100,52 @@ contains
                do f = 1, 8
                   bb = wb*zc(f) + db*yc(f)
                   cc = wb*xc(f)
-                  tile(f, r) = tile(f, r) + w(p, 1, 1)*bb + d(p, 1, 1)*cc
-                  tile(f, r + 1) = tile(f, r + 1) + w(p, 2, 1)*bb + d(p, 2, 1)*cc
-                  tile(f, r + 2) = tile(f, r + 2) + w(p, 3, 1)*bb + d(p, 3, 1)*cc
+                  tile(f, r) = tile(f, r) + w1(f)*bb + x1(f)*cc
+                  tile(f, r + 1) = tile(f, r + 1) + w2(f)*bb + x2(f)*cc
+                  tile(f, r + 2) = tile(f, r + 2) + w3(f)*bb + x3(f)*cc
                end do
             end do
          end do
       end do
    end subroutine scatter_gimp
 
-   !> What a particle gives to a node: v with the weight, ex ey ez with the slopes.
-   pure subroutine lay_out(q, vol, v, ex, ey, ez)
-      real(wp), intent(in) :: q(8, 14), vol(8)
-      real(wp), intent(out) :: v(8, 8), ex(8, 8), ey(8, 8), ez(8, 8)   !! (value, particle)
+   !> What the particles give to a node, as (value,particle): m, m v and the force of the stress on
+   !> planes across x; that on planes across y; that on planes across z.
+   pure subroutine lay_out(q, per_size, vx, y, z)
+      real(wp), intent(in) :: q(8, 14), per_size
+      real(wp), intent(out) :: vx(8, 8)   !! 1:4 taken with the weight, 5:7 with the x slope
+      real(wp), intent(out) :: y(8, 8)    !! 5:7 taken with the y slope
+      real(wp), intent(out) :: z(8, 8)    !! 5:7 taken with the z slope
+      real(wp) :: vol
+      integer :: p
 
-      v = 0
-      ex = 0
-      ey = 0
-      ez = 0
-      v(1, :) = q(:, 7)
-      v(2, :) = q(:, 7)*q(:, 4)
-      v(3, :) = q(:, 7)*q(:, 5)
-      v(4, :) = q(:, 7)*q(:, 6)
-      ex(5, :) = vol*q(:, 9)
-      ex(6, :) = vol*q(:, 12)
-      ex(7, :) = vol*q(:, 14)
-      ey(5, :) = vol*q(:, 12)
-      ey(6, :) = vol*q(:, 10)
-      ey(7, :) = vol*q(:, 13)
-      ez(5, :) = vol*q(:, 14)
-      ez(6, :) = vol*q(:, 13)
-      ez(7, :) = vol*q(:, 11)
+      !$omp simd private(vol)
+      do p = 1, 8
+         vol = -q(p, 8)*per_size
+         vx(p, 1) = q(p, 7)
+         vx(p, 2) = q(p, 7)*q(p, 4)
+         vx(p, 3) = q(p, 7)*q(p, 5)
+         vx(p, 4) = q(p, 7)*q(p, 6)
+         vx(p, 5) = vol*q(p, 9)
+         vx(p, 6) = vol*q(p, 12)
+         vx(p, 7) = vol*q(p, 14)
+         vx(p, 8) = 0
+         y(p, 5) = vol*q(p, 12)
+         y(p, 6) = vol*q(p, 10)
+         y(p, 7) = vol*q(p, 13)
+         y(p, 8) = 0
+         z(p, 5) = vol*q(p, 14)
+         z(p, 6) = vol*q(p, 13)
+         z(p, 7) = vol*q(p, 11)
+         z(p, 8) = 0
+      end do
+      do p = 1, 4
+         y(:, p) = 0
+         z(:, p) = 0
+      end do
+      call turn(vx)
+      call turn(y)
+      call turn(z)
    end subroutine lay_out
 
    !> Add a vector of each particle to the nodes with the shape function's weight.
@@ -118,30 +155,56 @@ contains
       real(wp), intent(in) :: value(8, 3)       !! vector of each lane
       type(frame_t), intent(in) :: frame          !! bin of the chunk
       real(wp), intent(inout) :: tile(4, *)   !! sums of the tile's nodes in 1:3
-      real(wp) :: w(8, 3, 3), d(8, 3, 3), v(4, 8), wbc, zb
-      integer :: p, b, c, r, f
+      real(wp) :: w(8, 3, 3), d(8, 3, 3), v(8, 8)
+      integer :: p
 
       call weigh_lanes(q, frame, w, d)
-      v(1, :) = value(:, 1)
-      v(2, :) = value(:, 2)
-      v(3, :) = value(:, 3)
-      v(4, :) = 0
+      !$omp simd
+      do p = 1, 8
+         v(p, 1) = value(p, 1)
+         v(p, 2) = value(p, 2)
+         v(p, 3) = value(p, 3)
+         v(p, 4) = 0
+         v(p, 5) = value(p, 1)
+         v(p, 6) = value(p, 2)
+         v(p, 7) = value(p, 3)
+         v(p, 8) = 0
+      end do
+      call turn(v)
+      call push_pairs(n, w, v, frame%base, tile)
+   end subroutine push_gimp
+
+   !> Add a vector of each particle to its nodes: two neighbours in x at once, then the third.
+   pure subroutine push_pairs(n, w, v, base, tile)
+      integer, intent(in) :: n, base
+      real(wp), intent(in) :: w(8, 3, 3)
+      real(wp), intent(in) :: v(8, 8)            !! each particle's vector, twice
+      real(wp), intent(inout) :: tile(*)         !! four sums a node
+      real(wp) :: x(8), z(8), wbc
+      integer :: p, b, c, r, f
+
       do p = 1, n
+         !$omp simd
+         do f = 1, 8
+            x(f) = is_v(f)*w(p, 1, 1) + is_f(f)*w(p, 2, 1)
+         end do
          do c = 1, 3
             do b = 1, 3
                wbc = w(p, b, 2)*w(p, c, 3)
-               r = frame%base + width*(b - 1 + width*(c - 1))
-               !$omp simd private(zb)
+               r = 4*(base - 1 + width*(b - 1 + width*(c - 1)))
+               !$omp simd
+               do f = 1, 8
+                  z(f) = wbc*v(f, p)
+                  tile(r + f) = tile(r + f) + x(f)*z(f)
+               end do
+               !$omp simd
                do f = 1, 4
-                  zb = wbc*v(f, p)
-                  tile(f, r) = tile(f, r) + w(p, 1, 1)*zb
-                  tile(f, r + 1) = tile(f, r + 1) + w(p, 2, 1)*zb
-                  tile(f, r + 2) = tile(f, r + 2) + w(p, 3, 1)*zb
+                  tile(r + f + 8) = tile(r + f + 8) + w(p, 3, 1)*z(f)
                end do
             end do
          end do
       end do
-   end subroutine push_gimp
+   end subroutine push_pairs
 
    !> Interpolate three nodal fields to the lanes of a chunk.
    pure subroutine gather_gimp(q, frame, tile, field, value)
@@ -151,11 +214,14 @@ contains
       integer, intent(in) :: field            !! first of the three fields
       real(wp), intent(out) :: value(8, 3)    !! at the particles
       real(wp) :: w(8, 3, 3), d(8, 3, 3), wyz(8, 9)
-      integer :: m
+      integer :: m, p
 
       call weigh_lanes(q, frame, w, d)
       do m = 1, 9
-         wyz(:, m) = w(:, second(m), 2)*w(:, third(m), 3)
+         !$omp simd
+         do p = 1, 8
+            wyz(p, m) = w(p, second(m), 2)*w(p, third(m), 3)
+         end do
       end do
       call gather_weighted(w, wyz, frame%base, tile, field, value)
    end subroutine gather_gimp
@@ -173,9 +239,12 @@ contains
 
       call weigh_lanes(q, frame, w, d)
       do m = 1, 9
-         wyz(:, m) = w(:, second(m), 2)*w(:, third(m), 3)
-         dyz(:, m) = d(:, second(m), 2)*w(:, third(m), 3)
-         wdz(:, m) = w(:, second(m), 2)*d(:, third(m), 3)
+         !$omp simd
+         do p = 1, 8
+            wyz(p, m) = w(p, second(m), 2)*w(p, third(m), 3)
+            dyz(p, m) = frame%per_size*d(p, second(m), 2)*w(p, third(m), 3)
+            wdz(p, m) = frame%per_size*w(p, second(m), 2)*d(p, third(m), 3)
+         end do
       end do
       do i = 5, 7
          gx = 0
@@ -194,8 +263,8 @@ contains
             end do
          end do
          gradient(:, 3*i - 14) = frame%per_size*gx
-         gradient(:, 3*i - 13) = frame%per_size*gy
-         gradient(:, 3*i - 12) = frame%per_size*gz
+         gradient(:, 3*i - 13) = gy
+         gradient(:, 3*i - 12) = gz
       end do
       call gather_weighted(w, wyz, frame%base, tile, 2, value)
    end subroutine gradient_gimp
@@ -232,7 +301,7 @@ contains
       integer :: i, m
 
       do i = 1, 3
-         call weigh(t(i), half, a(1, i), a(2, i), a(3, i), d1, d2, d3)
+         call weigh(t(i), half, 0.5_wp/half, a(1, i), a(2, i), a(3, i), d1, d2, d3)
       end do
       do m = 1, 9
          w(3*m - 2:3*m) = a(:, 1)*a(second(m), 2)*a(third(m), 3)

@@ -144,7 +144,7 @@ contains
       do b = first, last
          call list_bins(p, sided, grid, b, bins)
          call load_tile(grid, b, tile)
-         second(:, :size(grid%blocks%tile, 1)) = 0
+         second = 0
          do k = 1, bins%n
             c = bins%first(k)
             bins%frame(k)%half = bodies%half(p%body(c))
