@@ -22,8 +22,11 @@ contains
       call exactly_one(deck, block, 'face set')
       call exactly_one(deck, block, 'traction pressure')
       call resolve_set(deck, block)
-      if (has(block, 'set')) call refuse(deck, block, 'pressure', &
-         'it needs a face: a set has no normal')
+      if (valid(block, 'set')) then
+         if (block_named(deck, 'set', text_of(block, 'set')) > 0) call refuse(deck, block, &
+            'pressure', 'it needs a face, or a set with areas from a particle file: a *SET '// &
+            'has no normal')
+      end if
       if (valid(block, 'face')) call check_face(deck, block)
       call check_time_keys(deck, block)
    end subroutine check_load

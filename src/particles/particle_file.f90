@@ -13,7 +13,7 @@ module xmpm_particle_file
    implicit none
    private
 
-   public :: particle_data_t, particle_units_t, read_particles, read_particle_set
+   public :: particle_data_t, particle_set_t, particle_units_t, read_particles, read_particle_set
 
    character(len=*), parameter :: format_name = 'xmpm3d particles'
    integer(i8), parameter :: format_version = 1
@@ -32,6 +32,13 @@ module xmpm_particle_file
       real(wp), allocatable :: volume(:)         !! (n) [length^3]
       real(wp), allocatable :: velocity(:, :)    !! (3,n), of extent 0 where not given [length/time]
    end type particle_data_t
+
+   !> A named set of particles.
+   type :: particle_set_t
+      integer(i8), allocatable :: place(:)     !! (n) in the file, from 0
+      real(wp), allocatable :: area(:, :)      !! (3,n) outward, or extent 0: not given [length^2]
+      real(wp), allocatable :: offset(:, :)    !! (3,n) from particles to the face, or 0 [length]
+   end type particle_set_t
 
 contains
 
@@ -65,37 +72,41 @@ contains
    end subroutine read_particles
 
    !> Read a named set of particles; the same on every rank.
-   subroutine read_particle_set(path, name, units, comm, place, area, error)
+   subroutine read_particle_set(path, name, units, comm, set, error)
       character(len=*), intent(in) :: path               !! of the file
       character(len=*), intent(in) :: name               !! of the set
       type(particle_units_t), intent(in) :: units        !! of the deck
       type(comm_t), intent(in) :: comm                   !! ranks
-      integer(i8), allocatable, intent(out) :: place(:)    !! (n) in the file, from 0
-      real(wp), allocatable, intent(out) :: area(:, :)   !! (3,n), or extent 0 [length^2]
+      type(particle_set_t), intent(out) :: set           !! the set
       type(error_t), allocatable, intent(out) :: error   !! wrong file, see doc/particle_file.md
       type(hdf5_file_t) :: file
-      integer(i8), allocatable :: extent(:)
+      integer(i8), allocatable :: areas(:), offsets(:)
       integer(i8) :: total
-      logical :: known, loaded
+      logical :: known
+      character(len=:), allocatable :: group
 
       call open_particles(path, units, comm, file, total, error)
       if (allocated(error)) return
-      allocate (place(0), area(3, 0), extent(0))
-      known = has_item(file, 'sets/'//name//'/particles')
-      if (known) call read_dataset(file, 'sets/'//name//'/particles', place)
-      loaded = has_item(file, 'sets/'//name//'/areas')
-      if (known .and. loaded) then
-         extent = extent_of(file, 'sets/'//name//'/areas')
-         call read_dataset(file, 'sets/'//name//'/areas', area)
+      group = 'sets/'//name
+      allocate (set%place(0), set%area(3, 0), set%offset(3, 0), areas(0), offsets(0))
+      known = has_item(file, group//'/particles')
+      if (known) then
+         call read_dataset(file, group//'/particles', set%place)
+         call read_vectors(file, group//'/areas', set%area, areas)
+         call read_vectors(file, group//'/offsets', set%offset, offsets)
       end if
       call close_file(file, error)
       if (allocated(error)) return
       if (.not. known) then
-         call raise(error, code_files, "there is no set '"//name//"' (no dataset sets/"//name// &
+         call raise(error, code_files, "there is no set '"//name//"' (no dataset "//group// &
             '/particles)')
       else
-         call check_set(name, total, place, area, extent, error)
+         call check_places(group, total, set%place, error)
       end if
+      if (.not. allocated(error)) call check_vectors(group//'/areas', set%place, set%area, areas, &
+         error)
+      if (.not. allocated(error)) call check_vectors(group//'/offsets', set%place, set%offset, &
+         offsets, error)
       if (allocated(error)) call add_context(error, path)
       call agree_on_error(comm, error)
    end subroutine read_particle_set
@@ -344,10 +355,37 @@ contains
       if (size(names) == 0) text = 'none'
    end function list_of
 
-   subroutine check_set(name, total, place, area, extent, error)
+   !> Vectors of a set, where the file has them, and the shape that they have there.
+   subroutine read_vectors(file, name, vectors, extent)
+      type(hdf5_file_t), intent(inout) :: file
       character(len=*), intent(in) :: name
-      integer(i8), intent(in) :: total, place(:), extent(:)
-      real(wp), intent(in) :: area(:, :)
+      real(wp), allocatable, intent(inout) :: vectors(:, :)
+      integer(i8), allocatable, intent(inout) :: extent(:)
+
+      if (.not. has_item(file, name)) return
+      extent = extent_of(file, name)
+      call read_dataset(file, name, vectors)
+   end subroutine read_vectors
+
+   subroutine check_places(group, total, place, error)
+      character(len=*), intent(in) :: group
+      integer(i8), intent(in) :: total, place(:)
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(place)
+         if (place(i) >= 0 .and. place(i) < total) cycle
+         call raise(error, code_files, entry_text(group//'/particles', 0_i8, i)//' is '// &
+            to_text(place(i))//', but particles are 0 to '//to_text(total - 1))
+         return
+      end do
+   end subroutine check_places
+
+   !> Vectors of a set must be finite, one a particle, or not there at all.
+   subroutine check_vectors(name, place, vectors, extent, error)
+      character(len=*), intent(in) :: name
+      integer(i8), intent(in) :: place(:), extent(:)
+      real(wp), intent(in) :: vectors(:, :)
       type(error_t), allocatable, intent(out) :: error
       integer :: i
       logical :: right
@@ -355,21 +393,14 @@ contains
       right = size(extent) == 0
       if (size(extent) == 2) right = all(extent == [3_i8, size(place, kind=i8)])
       if (.not. right) then
-         call raise(error, code_files, wrong_shape('sets/'//name//'/areas', extent, &
+         call raise(error, code_files, wrong_shape(name, extent, &
             shape_text([3_i8, size(place, kind=i8)])))
          return
       end if
-      do i = 1, size(place)
-         if (place(i) >= 0 .and. place(i) < total) cycle
-         call raise(error, code_files, entry_text('sets/'//name//'/particles', 0_i8, i)//' is '// &
-            to_text(place(i))//', but particles are 0 to '//to_text(total - 1))
+      do i = 1, size(vectors, 2)
+         if (all(ieee_is_finite(vectors(:, i)))) cycle
+         call raise(error, code_files, entry_text(name, 0_i8, i)//' is not finite')
          return
       end do
-      do i = 1, size(area, 2)
-         if (all(ieee_is_finite(area(:, i)))) cycle
-         call raise(error, code_files, entry_text('sets/'//name//'/areas', 0_i8, i)// &
-            ' is not finite')
-         return
-      end do
-   end subroutine check_set
+   end subroutine check_vectors
 end module xmpm_particle_file

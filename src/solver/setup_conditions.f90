@@ -10,7 +10,7 @@ module xmpm_setup_conditions
    use xmpm_curves, only: curve_t, step_curve, make_ramp, make_table
    use xmpm_faces, only: find_face, sum_areas, scale_areas
    use xmpm_face_total, only: face_total
-   use xmpm_particle_file, only: particle_units_t, read_particle_set
+   use xmpm_particle_file, only: particle_set_t, particle_units_t, read_particle_set
    use xmpm_set_table, only: load_table_t, build, find
    use xmpm_storage, only: particles_t, c_x, c_vol
    use xmpm_setup_bodies, only: body_plan_t
@@ -116,8 +116,7 @@ contains
       type(block_t), intent(in) :: block
       type(body_plan_t), intent(in) :: plans(:)
       type(sets_t), intent(inout) :: sets
-      integer :: bit, i
-      type(error_t), allocatable :: failure
+      integer :: bit
       character(len=:), allocatable :: name
 
       name = text_of(block, 'set')
@@ -125,48 +124,81 @@ contains
          if (sets%names(bit)%s == name) return
       end do
       bit = new_bit(deck, block, name, sets)
-      do i = 1, size(plans)
-         if (.not. plans(i)%from_file) cycle
-         call mark_file_set(m, deck, i, plans(i), name, bit, sets, failure)
-         if (.not. allocated(failure)) return
-      end do
-      if (allocated(failure)) then
-         call complain(deck, block, 'set', failure%message)
-      else
-         call complain(deck, block, 'set', 'there is no *SET '//name)
-      end if
+      call read_file_sets(m, deck, block, plans, name, sets%tables(bit))
+      call mark_table(m%particles, sets%tables(bit), bit)
    end function bit_of_set
 
-   !> Mark the particles of a set in the file of a body.
-   subroutine mark_file_set(m, deck, body, plan, name, bit, sets, error)
-      type(model_t), intent(inout) :: m
-      type(deck_t), intent(in) :: deck
-      integer, intent(in) :: body, bit
-      type(body_plan_t), intent(in) :: plan
+   !> The particles of a set out of the files of all bodies; one file at least must have it.
+   subroutine read_file_sets(m, deck, block, plans, name, table)
+      type(model_t), intent(in) :: m
+      type(deck_t), intent(inout) :: deck
+      type(block_t), intent(in) :: block
+      type(body_plan_t), intent(in) :: plans(:)
       character(len=*), intent(in) :: name
-      type(sets_t), intent(inout) :: sets
+      type(load_table_t), intent(out) :: table
+      type(particle_set_t) :: set, whole
+      type(error_t), allocatable :: failure
+      character(len=:), allocatable :: message
+      integer :: i
+
+      message = 'there is no *SET '//name
+      allocate (whole%place(0), whole%area(3, 0), whole%offset(3, 0))
+      do i = 1, size(plans)
+         if (.not. plans(i)%from_file) cycle
+         call read_file_set(m, deck, i, name, set, failure)
+         if (allocated(failure)) then
+            if (message /= '') message = failure%message
+            cycle
+         end if
+         message = ''
+         whole%place = [whole%place, set%place + plans(i)%first_id + 1]
+         whole%area = beside(whole%area, set%area, size(set%place))
+         whole%offset = beside(whole%offset, set%offset, size(set%place))
+      end do
+      call build(table, whole%place, whole%area, whole%offset)
+      if (message /= '') call complain(deck, block, 'set', message)
+   end subroutine read_file_sets
+
+   !> Vectors side by side; `n` of zero where there is none behind.
+   pure function beside(first, second, n) result(both)
+      real(wp), intent(in) :: first(:, :), second(:, :)
+      integer, intent(in) :: n
+      real(wp) :: both(3, size(first, 2) + n)
+
+      both = 0
+      both(:, :size(first, 2)) = first
+      if (size(second, 2) == n) both(:, size(first, 2) + 1:) = second
+   end function beside
+
+   !> Mark the particles of a table.
+   subroutine mark_table(p, table, bit)
+      type(particles_t), intent(inout) :: p
+      type(load_table_t), intent(in) :: table
+      integer, intent(in) :: bit
+      integer :: c, i
+
+      do c = 1, p%n_chunks
+         do i = 1, p%count(c)
+            if (find(table, p%id(i, c)) > 0) call mark(p, i, c, bit)
+         end do
+      end do
+   end subroutine mark_table
+
+   !> A set from the file of a body.
+   subroutine read_file_set(m, deck, body, name, set, error)
+      type(model_t), intent(in) :: m
+      type(deck_t), intent(in) :: deck
+      integer, intent(in) :: body
+      character(len=*), intent(in) :: name
+      type(particle_set_t), intent(out) :: set
       type(error_t), allocatable, intent(out) :: error
       type(block_t) :: units, block
-      integer(i8), allocatable :: place(:)
-      real(wp), allocatable :: area(:, :)
-      integer :: c, i
 
       units = find_block(deck, 'units', 1)
       block = find_block(deck, 'body', body)
       call read_particle_set(text_of(block, 'file'), name, particle_units_t( &
-         text_of(units, 'length'), text_of(units, 'time')), m%comm, place, area, error)
-      if (allocated(error)) return
-      if (size(area, 2) /= size(place)) then
-         deallocate (area)
-         allocate (area(3, size(place)), source=0.0_wp)
-      end if
-      call build(sets%tables(bit), place + plan%first_id + 1, area)
-      do c = 1, m%particles%n_chunks
-         do i = 1, m%particles%count(c)
-            if (find(sets%tables(bit), m%particles%id(i, c)) > 0) call mark(m%particles, i, c, bit)
-         end do
-      end do
-   end subroutine mark_file_set
+         text_of(units, 'length'), text_of(units, 'time')), m%comm, set, error)
+   end subroutine read_file_set
 
    !> The factor over time that a block asks for.
    subroutine read_curve(deck, block, curve)
@@ -223,6 +255,7 @@ contains
          call load_face(m, deck, block, body, plans(body), face(colon + 1:), load)
       else
          load%set = bit_of_set(m, deck, block, plans, sets)
+         call check_areas(deck, block, sets%tables(load%set), load)
          call load_layer(m, sets%tables(load%set), load)
       end if
    end subroutine read_load
@@ -259,7 +292,7 @@ contains
       do i = 1, size(volume)
          if (any(abs(area(:, i)) > 0)) call mark(m%particles, lane(1, i), lane(2, i), load%set)
       end do
-      call gather_table(m, lane, area, load)
+      call gather_table(m, lane, area, 0*area, load)
    end subroutine load_face
 
    !> Particles of a body on this rank, in storage order.
@@ -285,27 +318,44 @@ contains
    end subroutine list_body
 
    !> The same table of loaded particles on all ranks. Collective.
-   subroutine gather_table(m, lane, area, load)
+   subroutine gather_table(m, lane, area, offset, load)
       type(model_t), intent(in) :: m
       integer, intent(in) :: lane(:, :)
-      real(wp), intent(in) :: area(:, :)
+      real(wp), intent(in) :: area(:, :), offset(:, :)
       type(load_t), intent(inout) :: load
       integer(i8), allocatable :: mine(:), ids(:)
-      real(wp), allocatable :: some(:, :), all_areas(:, :)
+      real(wp), allocatable :: some(:, :), apart(:, :), all_areas(:, :), all_offsets(:, :)
       integer :: i, n
 
-      allocate (mine(size(area, 2)), some(3, size(area, 2)))
+      allocate (mine(size(area, 2)), some(3, size(area, 2)), apart(3, size(area, 2)))
       n = 0
       do i = 1, size(area, 2)
          if (.not. any(abs(area(:, i)) > 0)) cycle
          n = n + 1
          mine(n) = m%particles%id(lane(1, i), lane(2, i))
          some(:, n) = area(:, i)
+         apart(:, n) = offset(:, i)
       end do
       call gather_all(m%comm, mine(:n), ids)
       call gather_all(m%comm, some(:, :n), all_areas)
-      call build(load%table, ids, all_areas)
+      call gather_all(m%comm, apart(:, :n), all_offsets)
+      call build(load%table, ids, all_areas, all_offsets)
    end subroutine gather_table
+
+   !> A pressure needs areas, for their normals.
+   subroutine check_areas(deck, block, table, load)
+      type(deck_t), intent(inout) :: deck
+      type(block_t), intent(in) :: block
+      type(load_table_t), intent(in) :: table
+      type(load_t), intent(in) :: load
+      logical :: has_areas
+
+      has_areas = .false.
+      if (allocated(table%area)) has_areas = any(abs(table%area) > 0)
+      if (has_areas .or. .not. abs(load%pressure) > 0) return
+      call complain(deck, block, 'pressure', 'the set has no areas in the particle file, and '// &
+         'so no normal: give a traction')
+   end subroutine check_areas
 
    !> A set as a surface layer: areas of the file, or one particle's cross section along the
    !> traction. Collective.
@@ -314,12 +364,13 @@ contains
       type(load_table_t), intent(in) :: table
       type(load_t), intent(inout) :: load
       integer, allocatable :: lane(:, :)
-      real(wp), allocatable :: area(:, :)
+      real(wp), allocatable :: area(:, :), offset(:, :)
       integer :: c, i, n, at
 
       n = 0
       allocate (lane(2, sum(m%particles%count(:m%particles%n_chunks))))
       allocate (area(3, size(lane, 2)), source=0.0_wp)
+      allocate (offset(3, size(lane, 2)), source=0.0_wp)
       do c = 1, m%particles%n_chunks
          do i = 1, m%particles%count(c)
             if (.not. btest(m%particles%sets(i, c), load%set)) cycle
@@ -327,14 +378,17 @@ contains
             lane(:, n) = [i, c]
             at = 0
             if (allocated(table%ids)) at = find(table, m%particles%id(i, c))
-            if (at > 0) area(:, n) = table%area(:, at)
+            if (at > 0) then
+               area(:, n) = table%area(:, at)
+               offset(:, n) = table%offset(:, at)
+            end if
             if (.not. norm2(area(:, n)) > 0) then
                area(:, n) = m%particles%q(i, c_vol, c)**(2.0_wp/3)*load%traction &
                   /max(norm2(load%traction), tiny(1.0_wp))
             end if
          end do
       end do
-      call gather_table(m, lane(:, :n), area(:, :n), load)
+      call gather_table(m, lane(:, :n), area(:, :n), offset(:, :n), load)
    end subroutine load_layer
 
    !> One *BOUNDARY.

@@ -553,3 +553,91 @@ def test_deck_wants_files_that_fit_together(tmp_path, monkeypatch, capsys):
     assert not (tmp_path / "job.inp").exists()
     assert main(["deck", "a.h5"]) == 0
     assert "*MATERIAL alloy" in capsys.readouterr().out
+
+
+DECK = """
+*JOB {job}
+*UNITS length = mm, mass = g, time = ms
+*GRID size = 2
+*MATERIAL alloy
+  law = elastic, density = 2.7e-3, young = 70e3, poisson = 0.33
+{bodies}
+{loads}
+*BOUNDARY foot
+  plane = x 0, type = roller
+*TIME end = 0.004
+*OUTPUT history = 1e-4, particles = none
+*END
+"""
+BLOCK = """
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 7, 8, 5};
+Box(2) = {7, 0, 0, 6, 8, 5};
+BooleanFragments{ Volume{1}; Delete; }{ Volume{2}; Delete; }
+e = 0.01;
+Physical Volume("near:alloy") = {1};
+Physical Volume("far:alloy") = {2};
+Physical Surface("end") = Surface In BoundingBox{13 - e, -e, -e, 13 + e, 8 + e, 5 + e};
+Physical Surface("top") = Surface In BoundingBox{-e, -e, 5 - e, 13 + e, 8 + e, 5 + e};
+"""
+
+
+def energies_of(folder, job, bodies, loads):
+    (folder / f"{job}.inp").write_text(DECK.format(job=job, bodies=bodies, loads=loads))
+    end = subprocess.run(
+        [program(), f"{job}.inp"],
+        cwd=folder,
+        env=LAUNCH | os.environ,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert end.returncode == 0, end.stderr
+    lines = (folder / f"{job}_energy.csv").read_text().splitlines()
+    rows = [line for line in lines if not line.startswith("#")]
+    table = np.genfromtxt(rows, delimiter=",", names=True)
+    return np.stack([table[name] for name in ("kinetic", "strain", "external")])
+
+
+def test_sets_are_loaded_as_the_faces_of_shapes(tmp_path):
+    """Same particles, same areas, same place of the face: the same run to rounding.
+
+    The set `top` reaches over both bodies of the file.
+    """
+    make(write(tmp_path, "block.geo", BLOCK), tmp_path / "block.h5", "--h", 2, "--unit", "mm")
+    shapes = (
+        "*BODY near material = alloy, box = 0 0 0 7 8 5\n"
+        "*BODY far material = alloy, box = 7 0 0 13 8 5"
+    )
+    files = "".join(
+        f'*BODY {name} material = alloy, file = "block.h5", part = {name}\n'
+        for name in ("near", "far")
+    )
+    expected = energies_of(
+        tmp_path,
+        "shapes",
+        shapes,
+        "*LOAD face = far:+x, traction = 30 0 10\n"
+        "*LOAD face = near:+z, pressure = 20\n*LOAD face = far:+z, pressure = 20",
+    )
+    found = energies_of(
+        tmp_path,
+        "files",
+        files,
+        "*LOAD set = end, traction = 30 0 10\n*LOAD set = top, pressure = 20",
+    )
+    assert expected[1].max() > 0
+    # Positions from the two programs differ by rounding, which 30 steps do not enlarge much.
+    assert np.allclose(found, expected, rtol=0, atol=1e-9 * expected.max())
+
+
+def test_pressure_on_a_set_without_areas_is_refused(tmp_path):
+    make(write(tmp_path, "plate.geo", PLATE), tmp_path / "a.h5", "--h", 2, "--unit", "mm")
+    with h5py.File(tmp_path / "a.h5", "a") as file:
+        del file["sets/left/areas"]
+    bodies = '*BODY plate material = alloy, file = "a.h5"'
+    text = DECK.format(job="a", bodies=bodies, loads="*LOAD set = left, pressure = 1")
+    (tmp_path / "a.inp").write_text(text)
+    end = check_deck(tmp_path, "a.inp")
+    assert end.returncode == 2
+    assert "the set has no areas in the particle file" in end.stderr

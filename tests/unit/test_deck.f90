@@ -432,7 +432,7 @@ contains
       call refuse('*LOAD face=plate:+x traction=1 0 0 pressure=1|', &
          'only one of these can be given: traction, pressure')
       call refuse('*SET s body=plate box=0 0 0 1 1 1|*LOAD set=s pressure=1|', &
-         'it needs a face: a set has no normal')
+         'it needs a face, or a set with areas from a particle file')
       call refuse('*LOAD face=plate traction=1 0 0|', &
          "'plate' is not BODY:FACE with a face out of +x -x")
       call refuse('*LOAD face=plate:top traction=1 0 0|', "'top' is not a face; did you mean")

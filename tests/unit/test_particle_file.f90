@@ -9,7 +9,7 @@ program test_particle_file
    use xmpm_hdf5_file, only: hdf5_file_t, create_file, close_file
    use xmpm_hdf5_write, only: write_dataset, write_attribute, write_texts, make_group
    use xmpm_particle_file, only: particle_data_t, particle_units_t, read_particles, &
-      read_particle_set
+      read_particle_set, particle_set_t
    use testing, only: suite_t, check, check_close, check_error, check_no_error, finish
    implicit none
 
@@ -17,7 +17,7 @@ program test_particle_file
    type :: content_t
       character(len=:), allocatable :: format, length, time
       integer(i8) :: version = 1
-      real(wp), allocatable :: x(:, :), volume(:), velocity(:, :), area(:, :)
+      real(wp), allocatable :: x(:, :), volume(:), velocity(:, :), area(:, :), offset(:, :)
       integer(i8), allocatable :: bodies(:), set(:)
       logical :: named = .true.
    end type content_t
@@ -88,6 +88,7 @@ contains
          call make_group(file, 'sets/top')
          if (allocated(c%set)) call write_dataset(file, 'sets/top/particles', c%set)
          if (allocated(c%area)) call write_dataset(file, 'sets/top/areas', c%area)
+         if (allocated(c%offset)) call write_dataset(file, 'sets/top/offsets', c%offset)
          call close_file(file, error)
          call check_no_error(suite, 'a file of the tests is written', error)
       end if
@@ -166,20 +167,24 @@ contains
    subroutine test_sets()
       type(error_t), allocatable :: error
       type(content_t) :: c
-      integer(i8), allocatable :: place(:)
-      real(wp), allocatable :: area(:, :)
+      type(particle_set_t) :: set
 
       c = right_content()
       call write_file(c)
-      call read_particle_set(path, 'top', units, comm, place, area, error)
+      call read_particle_set(path, 'top', units, comm, set, error)
       call check_no_error(suite, 'a set is read', error)
-      call check(suite, 'every rank has the whole set', all(place == c%set))
-      call check(suite, 'with its areas', all(abs(area - c%area) <= 0.0_wp))
-      deallocate (c%area)
+      call check(suite, 'every rank has the whole set', all(set%place == c%set))
+      call check(suite, 'with its areas', all(abs(set%area - c%area) <= 0.0_wp))
+      call check(suite, 'offsets that are not there are none', size(set%offset) == 0)
+      allocate (c%offset, source=0.25_wp*c%area)
       call write_file(c)
-      call read_particle_set(path, 'top', units, comm, place, area, error)
+      call read_particle_set(path, 'top', units, comm, set, error)
+      call check(suite, 'offsets are read', all(abs(set%offset - c%offset) <= 0.0_wp))
+      deallocate (c%area, c%offset)
+      call write_file(c)
+      call read_particle_set(path, 'top', units, comm, set, error)
       call check_no_error(suite, 'a set without areas is read', error)
-      call check(suite, 'and has none', size(place) == 2 .and. size(area) == 0)
+      call check(suite, 'and has none', size(set%place) == 2 .and. size(set%area) == 0)
    end subroutine test_sets
 
    !> Write a file, read it, and look for a message.
@@ -317,6 +322,9 @@ contains
       call expect_set(c, 'top', 'sets/top/areas[0] is not finite')
       c%area = c%area(:2, :)
       call expect_set(c, 'top', 'the dataset sets/top/areas has shape (2,2) instead of (2,3)')
+      c = right_content()
+      allocate (c%offset(3, 3), source=0.0_wp)
+      call expect_set(c, 'top', 'the dataset sets/top/offsets has shape (3,3) instead of (2,3)')
       c%length = 'km'
       call expect_set(c, 'top', "the length_unit is 'km', that of the deck is 'mm'")
    end subroutine test_set_faults
@@ -325,11 +333,10 @@ contains
       type(content_t), intent(in) :: c
       character(len=*), intent(in) :: name, message
       type(error_t), allocatable :: error
-      integer(i8), allocatable :: place(:)
-      real(wp), allocatable :: area(:, :)
+      type(particle_set_t) :: set
 
       call write_file(c)
-      call read_particle_set(path, name, units, comm, place, area, error)
+      call read_particle_set(path, name, units, comm, set, error)
       call check_error(suite, 'a wrong set is refused', error, message)
    end subroutine expect_set
 end program test_particle_file

@@ -52,11 +52,21 @@ contains
 
    subroutine test_repeated()
       type(load_table_t) :: table
+      real(wp) :: offset(3, 3)
 
       call build(table, [4_i8, 2_i8, 4_i8], reshape([1.0_wp, 0.0_wp, 0.0_wp, 5.0_wp, 5.0_wp, &
          5.0_wp, 0.0_wp, 3.0_wp, 0.0_wp], [3, 3]))
       call check(suite, 'an id that comes twice stands once', size(table%ids) == 2)
       call check_close(suite, 'with the sum of its areas', sum(table%area(:, find(table, 4_i8))), &
          4.0_wp, 0.0_wp, 0.0_wp)
+      call check(suite, 'without offsets they are zero', all(abs(table%offset) <= 0.0_wp))
+      offset = reshape([4.0_wp, 0.0_wp, 0.0_wp, 7.0_wp, 7.0_wp, 7.0_wp, 0.0_wp, 8.0_wp, 0.0_wp], &
+         [3, 3])
+      call build(table, [4_i8, 2_i8, 4_i8], reshape([1.0_wp, 0.0_wp, 0.0_wp, 5.0_wp, 5.0_wp, &
+         5.0_wp, 0.0_wp, 3.0_wp, 0.0_wp], [3, 3]), offset)
+      call check(suite, 'an offset stays with its id', all(abs(table%offset(:, find(table, 2_i8)) &
+         - 7.0_wp) <= 0.0_wp))
+      call check(suite, 'offsets of an id are averaged by area: 1/4 of one, 3/4 of the other', &
+         all(abs(table%offset(:, find(table, 4_i8)) - [1.0_wp, 6.0_wp, 0.0_wp]) <= 1.0e-14_wp))
    end subroutine test_repeated
 end program test_set_table
