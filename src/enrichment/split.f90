@@ -1,7 +1,8 @@
 !> Which nodes are split, their rows, and the bins that must tell sides apart.
 !>
 !> A node is split by a crack where particles with H > 0 and with H < 0 reach it; the sharp rules
-!> ask besides that the node belong to the cells or places that they name.
+!> ask besides that the node belong to the cells or places that they name. It is split by contact
+!> where bodies of several contact groups reach it: each group but the lowest has its own rows.
 module xmpm_split
    use xmpm_kinds, only: wp
    use xmpm_error, only: error_t, raise, code_numerics
@@ -20,7 +21,9 @@ module xmpm_split
    implicit none
    private
 
-   public :: split_nodes, split_t
+   public :: split_nodes, split_t, row_of_sides, sides_of_group
+
+   integer, parameter, public :: most_groups = 31   !! contact groups, 0 to 30
 
    integer, parameter :: plus_bit = 0, minus_bit = 1, allowed_bit = 2
 
@@ -30,14 +33,16 @@ module xmpm_split
       integer, allocatable :: of(:)          !! (ordinary rows) number of the split node, 0 for none
       integer, allocatable :: row(:)         !! (n) ordinary row
       integer, allocatable :: n_cracks(:)    !! (n) cracks that split it
-      integer, allocatable :: crack(:, :)    !! (3,n) which, ascending
+      integer, allocatable :: crack(:, :)    !! (3,n) which; less than 0: contact group
       integer, allocatable :: first(:)       !! (n) first further row
+      integer, allocatable :: groups(:)      !! (ordinary rows) bit of each contact group that reaches
+                                             !! the node; of size 0 without contact
    end type split_t
 
 contains
 
    !> Find the split nodes, give them rows, list the sided bins, and extend the halo. Collective.
-   subroutine split_nodes(cracks, comm, p, grid, sharing, halo, sided, error)
+   subroutine split_nodes(cracks, comm, p, grid, sharing, halo, sided, split, error)
       type(crack_t), intent(in) :: cracks(:)
       type(comm_t), intent(in) :: comm
       type(particles_t), intent(in) :: p
@@ -45,8 +50,8 @@ contains
       type(sharing_t), intent(in) :: sharing      !! shared rows of ordinary nodes
       type(halo_t), intent(inout) :: halo         !! made anew for all rows
       type(sided_t), intent(inout) :: sided       !! made anew
+      type(split_t), intent(out) :: split
       type(error_t), allocatable, intent(out) :: error   !! too many cracks at a node
-      type(split_t) :: split
       type(sharing_t) :: whole
       integer, allocatable :: bits(:), first_extra(:), n_extra(:)
       integer :: i
@@ -64,6 +69,9 @@ contains
          call note_split(cracks(i)%rule == rule_graded, i, bits, split, grid, error)
          if (allocated(error)) return
       end do
+      allocate (split%groups(0))
+      if (allocated(p%group)) call split_by_groups(comm, p, grid, halo, split, error)
+      if (allocated(error)) return
       call number_further_rows(split, grid, first_extra, n_extra)
       call add_split_rows(sharing, first_extra, n_extra, whole)
       call make_halo(halo, comm%rank, whole%ranks, whole%first, whole%rows, grid%n_rows)
@@ -97,6 +105,35 @@ contains
       end do
    end subroutine mark_sides
 
+   !> Add the nodes that bodies of several contact groups reach to the list. Collective.
+   subroutine split_by_groups(comm, p, grid, halo, split, error)
+      type(comm_t), intent(in) :: comm
+      type(particles_t), intent(in) :: p
+      type(grid_t), intent(in) :: grid
+      type(halo_t), intent(inout) :: halo
+      type(split_t), intent(inout) :: split
+      type(error_t), allocatable, intent(out) :: error
+      integer :: c, row, g, offsets(grid%lattice%reach**3), rows(grid%lattice%reach**3)
+
+      offsets = stencil_offsets(grid%lattice)
+      deallocate (split%groups)
+      allocate (split%groups(grid%n_plain), source=0)
+      do c = 1, p%n_chunks
+         if (p%count(c) == 0) cycle
+         rows = rows_of_bin(grid, p%bin(c), offsets)
+         split%groups(rows) = ibset(split%groups(rows), p%group(p%body(c)))
+      end do
+      call merge_bits(halo, comm, split%groups)
+      do row = 1, grid%n_plain
+         if (popcnt(split%groups(row)) < 2) cycle
+         do g = trailz(split%groups(row)) + 1, most_groups - 1
+            if (.not. btest(split%groups(row), g)) cycle
+            call note_node(split, row, -g, grid, error)
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine split_by_groups
+
    !> Add the nodes that a crack splits to the list.
    subroutine note_split(graded, number, bits, split, grid, error)
       logical, intent(in) :: graded
@@ -104,23 +141,36 @@ contains
       type(split_t), intent(inout) :: split
       type(grid_t), intent(in) :: grid
       type(error_t), allocatable, intent(out) :: error
-      integer :: row, s, wanted
+      integer :: row, wanted
 
       wanted = ibset(ibset(0, plus_bit), minus_bit)
       if (.not. graded) wanted = ibset(wanted, allowed_bit)
       do row = 1, grid%n_plain
          if (iand(bits(row), wanted) /= wanted) cycle
-         if (split%of(row) == 0) call add_node(split, row)
-         s = split%of(row)
-         if (split%n_cracks(s) == most_cracks) then
-            call raise(error, code_numerics, 'more than '//to_text(most_cracks)// &
-               ' cracks meet at the grid node '//to_text(node_position(grid, row)))
-            return
-         end if
-         split%n_cracks(s) = split%n_cracks(s) + 1
-         split%crack(split%n_cracks(s), s) = number
+         call note_node(split, row, number, grid, error)
+         if (allocated(error)) return
       end do
    end subroutine note_split
+
+   !> A crack or a contact group splits a node.
+   subroutine note_node(split, row, number, grid, error)
+      type(split_t), intent(inout) :: split
+      integer, intent(in) :: row, number
+      type(grid_t), intent(in) :: grid
+      type(error_t), allocatable, intent(out) :: error
+      integer :: s
+
+      if (split%of(row) == 0) call add_node(split, row)
+      s = split%of(row)
+      if (split%n_cracks(s) == most_cracks) then
+         call raise(error, code_numerics, 'more than '//to_text(most_cracks)// &
+            ' cracks (further bodies in contact count as cracks) meet at the grid node '// &
+            to_text(node_position(grid, row)))
+         return
+      end if
+      split%n_cracks(s) = split%n_cracks(s) + 1
+      split%crack(split%n_cracks(s), s) = number
+   end subroutine note_node
 
    subroutine add_node(split, row)
       type(split_t), intent(inout) :: split
@@ -221,7 +271,8 @@ contains
             if (any(cracks(:n) == split%crack(j, s))) cycle
             if (n == most_cracks) then
                call raise(error, code_numerics, 'more than '//to_text(most_cracks)// &
-                  ' cracks pass through the cells around one bin of particles')
+                  ' cracks (further bodies in contact count as cracks) pass through the cells'// &
+                  ' around one bin of particles')
                return
             end if
             n = n + 1
@@ -255,6 +306,37 @@ contains
             if (cracks(k) == split%crack(j, s) .and. btest(set, k - 1)) sides = ibset(sides, j - 1)
          end do
       end do
-      if (sides > 0) place = split%first(s) + sides - 1
+      place = row_of_sides(split, s, sides)
    end function row_of_set
+
+   !> Row of a split node for the sides of its own cracks: bit j - 1 for the plus side of the j-th.
+   pure function row_of_sides(split, s, sides) result(row)
+      type(split_t), intent(in) :: split
+      integer, intent(in) :: s       !! split node
+      integer, intent(in) :: sides
+      integer :: row
+
+      row = split%row(s)
+      if (sides > 0) row = split%first(s) + sides - 1
+   end function row_of_sides
+
+   !> Sides of a split node's rows that serve a contact group, one for each set of sides of its true
+   !> cracks, in the same order for all groups.
+   pure function sides_of_group(split, s, group) result(sides)
+      type(split_t), intent(in) :: split
+      integer, intent(in) :: s       !! split node
+      integer, intent(in) :: group
+      integer, allocatable :: sides(:)
+      integer :: j, k, chosen
+
+      chosen = 0
+      do j = 1, split%n_cracks(s)
+         if (split%crack(j, s) == -group .and. group > 0) chosen = ibset(chosen, j - 1)
+      end do
+      allocate (sides(0))
+      do k = 0, 2**split%n_cracks(s) - 1
+         if (all([(btest(k, j - 1) .eqv. btest(chosen, j - 1), j=1, split%n_cracks(s))] .or. &
+            split%crack(:split%n_cracks(s), s) > 0)) sides = [sides, k]
+      end do
+   end function sides_of_group
 end module xmpm_split

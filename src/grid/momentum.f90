@@ -5,8 +5,8 @@ module xmpm_momentum
    implicit none
    private
 
-   public :: force_out_of_balance, impulse_energy, advance_momentum, blend_change, &
-      velocity_from_second, nodal_work_t, change_from_velocity
+   public :: force_out_of_balance, impulse_energy, advance_momentum, add_nodal_work, &
+      blend_change, velocity_from_second, nodal_work_t, change_from_velocity
 
    !> Work that nodes did or took in a step, counted once over all ranks [energy].
    type :: nodal_work_t
@@ -19,14 +19,13 @@ contains
    !> Velocity after the step and its change: eq. 4 and 29, row by row.
    !>
    !> change = dt (f/m + b - rate v); fields 2:4 become the new velocity, 5:7 the change. Rows
-   !> without mass become zero. Work is exact for the change of the rows' kinetic energy.
-   subroutine advance_momentum(grid, dt, gravity, rate, work)
+   !> without mass become zero.
+   subroutine advance_momentum(grid, dt, gravity, rate)
       type(grid_t), intent(inout) :: grid
       real(wp), intent(in) :: dt           !! from v(n-1/2) to v(n+1/2) [time]
       real(wp), intent(in) :: gravity(3)   !! body force per mass [length/time^2]
       real(wp), intent(in) :: rate         !! of nodal damping [1/time]
-      type(nodal_work_t), intent(inout) :: work
-      real(wp) :: m, v(3), change(3), mean(3)
+      real(wp) :: m, v(3), change(3)
       integer :: b, i, first, last
 
       do b = 1, grid%blocks%n_node_blocks + 1
@@ -41,13 +40,34 @@ contains
             change = dt*(grid%node(5:7, i)/m + gravity - rate*v)
             grid%node(2:4, i) = v + change
             grid%node(5:7, i) = change
-            if (.not. grid%mine(i)) cycle
-            mean = v + 0.5_wp*change
-            work%external = work%external + m*dt*dot_product(gravity, mean)
-            work%damping = work%damping + m*dt*rate*dot_product(v, mean)
          end do
       end do
    end subroutine advance_momentum
+
+   !> Add the work of body force and nodal damping in a step, when conditions and contact have had
+   !> their say: exact for the change of the rows' kinetic energy.
+   pure subroutine add_nodal_work(grid, dt, gravity, rate, work)
+      type(grid_t), intent(in) :: grid
+      real(wp), intent(in) :: dt           !! from v(n-1/2) to v(n+1/2) [time]
+      real(wp), intent(in) :: gravity(3)   !! body force per mass [length/time^2]
+      real(wp), intent(in) :: rate         !! of nodal damping [1/time]
+      type(nodal_work_t), intent(inout) :: work
+      real(wp) :: impulse, v(3), mean(3)
+      integer :: b, i, first, last
+
+      if (.not. (any(abs(gravity) > 0) .or. rate > 0)) return
+      do b = 1, grid%blocks%n_node_blocks + 1
+         call active_rows(grid, b, first, last)
+         do i = first, last
+            if (.not. (grid%node(1, i) > 0 .and. grid%mine(i))) cycle
+            impulse = dt*grid%node(1, i)
+            v = grid%node(2:4, i) - grid%node(5:7, i)
+            mean = v + 0.5_wp*grid%node(5:7, i)
+            work%external = work%external + impulse*dot_product(gravity, mean)
+            work%damping = work%damping + impulse*rate*dot_product(v, mean)
+         end do
+      end do
+   end subroutine add_nodal_work
 
    !> Sum of |m change| over the rows that this rank counts [momentum]; fields 5:7 hold the change.
    pure function force_out_of_balance(grid) result(total)

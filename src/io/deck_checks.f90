@@ -10,6 +10,7 @@ module xmpm_deck_checks
    use xmpm_deck_cracks, only: check_crack, check_symmetry_planes
    use xmpm_deck_choices, only: exactly_one, refuse
    use xmpm_deck_references, only: resolve, resolve_list
+   use xmpm_deck_contact, only: check_contact, check_rigid
    use xmpm_deck_loads, only: check_load, check_boundary, check_time_keys, check_box
    implicit none
    private
@@ -33,6 +34,7 @@ contains
          case ('material'); call check_material(deck, block)
          case ('body'); call check_body(deck, block)
          case ('set'); call check_set(deck, block)
+         case ('contact'); call check_contact(deck, block)
          case ('crack'); call check_crack(deck, block)
          case ('curve'); call check_curve(deck, block)
          case ('load'); call check_load(deck, block)
@@ -96,6 +98,7 @@ contains
       logical :: started
 
       call resolve(deck, block, 'material', 'material')
+      call check_rigid(deck, block)
       started = .false.
       do i = 1, size(block%entries)
          associate (key => block%entries(i)%key)

@@ -97,6 +97,12 @@ contains
       call add_key(t, key_t(name='stress', least=6, most=6, dimension='stress', &
          default='0 0 0 0 0 0', &
          meaning='uniform initial stress: xx yy zz xy yz xz'))
+      call add_key(t, key_t(name='rigid', kind=kind_flag, &
+         meaning='does not strain or turn; it moves by the forces on it and needs a *CONTACT'))
+      call add_key(t, key_t(name='mass', dimension='mass', range=positive, &
+         meaning='of a rigid body; from its volume and density where not given'))
+      call add_key(t, key_t(name='held', kind=kind_text, most=3, &
+         meaning='letters out of x y z in which a rigid body keeps its velocity, whatever acts'))
 
       call add_keyword(t, keyword_t(name='set', naming=must_have_name, repeatable=.true., &
          meaning='a named set of particles: those of a body in a box at the start'))
@@ -104,6 +110,16 @@ contains
          meaning='name of a *BODY'))
       call add_key(t, key_t(name='box', least=6, most=6, dimension='length', required=.true., &
          meaning='corners: x0 y0 z0 x1 y1 z1'))
+
+      call add_keyword(t, keyword_t(name='contact', repeatable=.true., &
+         meaning='bodies that meet; those that none names together stick as one'))
+      call add_key(t, key_t(name='bodies', kind=kind_text, most=any_number, required=.true., &
+         meaning='names of *BODY blocks, each against all others; or all'))
+      call add_key(t, key_t(name='friction', range=not_negative, default='0', &
+         meaning='coefficient of Coulomb friction'))
+      call add_key(t, key_t(name='normal', least=3, most=3, &
+         meaning='of the faces that meet, from the body that stands first in the deck; found where'// &
+         ' not given'))
    end subroutine add_materials_and_bodies
 
    !> The shapes of bodies, each with its twin that cuts the shape out.

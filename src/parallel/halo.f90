@@ -11,7 +11,7 @@ module xmpm_halo
    implicit none
    private
 
-   public :: halo_t, make_halo, start_sum, finish_sum, merge_bits
+   public :: halo_t, make_halo, start_sum, finish_sum, merge_bits, take_largest
 
    integer, parameter :: tag = 71
 
@@ -111,6 +111,21 @@ contains
          if (halo%ranks(k) > halo%rank) call add_parts(halo, k, values, low, high)
       end do
    end subroutine finish_sum
+
+   !> The largest value among all sharing ranks, field by field.
+   subroutine take_largest(halo, comm, values)
+      type(halo_t), intent(inout) :: halo
+      type(comm_t), intent(in) :: comm
+      real(wp), intent(inout) :: values(:, :)   !! (fields,rows)
+      integer :: i
+
+      if (halo%n == 0) return
+      call start_sum(halo, comm, values, 1, size(values, 1))
+      call MPI_Waitall(2*halo%n, halo%requests, MPI_STATUSES_IGNORE)
+      do i = 1, size(halo%rows)
+         values(:, halo%rows(i)) = max(values(:, halo%rows(i)), halo%receive(:, i))
+      end do
+   end subroutine take_largest
 
    pure subroutine add_parts(halo, k, values, low, high)
       type(halo_t), intent(in) :: halo

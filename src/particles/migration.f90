@@ -8,7 +8,7 @@ module xmpm_migration
    use xmpm_blocks, only: local_block, owner_of
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, record_t, append_particle, read_record, remove_lane, &
-      move_lane, n_hot, n_near, near_crack, c_x
+      move_lane, new_to_bin, n_hot, n_near, near_crack, c_x
    implicit none
    private
 
@@ -31,7 +31,8 @@ contains
       type(grid_t), intent(in) :: grid
       integer, intent(in) :: movers(:)          !! chunks that particles left
       type(outbox_t), intent(inout) :: outbox
-      logical, intent(inout) :: near_moved      !! set where a particle near a crack changed its bin
+      logical, intent(inout) :: near_moved      !! set where a particle near a crack changed its bin,
+                                                !! or the first of a contact group came to a bin
       type(record_t) :: record
       integer :: i, c, lane, b, to
 
@@ -46,6 +47,9 @@ contains
             end if
             if (knows_crack(p, lane, c)) near_moved = .true.
             if (b > 0) then
+               if (allocated(p%group) .and. .not. near_moved) then
+                  near_moved = new_to_bin(p, to, p%body(c))
+               end if
                call move_lane(p, grid%lattice, grid%blocks, lane, c, to)
             else
                call read_record(p, lane, c, record)

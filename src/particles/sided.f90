@@ -1,7 +1,8 @@
 !> Bins that touch split nodes: their rows for each side, and the particles' weights of the sides.
 !>
 !> With k cracks in reach a bin has 2**k sets of rows; set s takes the plus side of crack i where
-!> bit i - 1 of s is set. A particle's weight of a set is the product of (1 + H)/2 or (1 - H)/2,
+!> bit i - 1 of s is set. A contact group counts as a crack too: its bodies are the plus side, all
+!> others the minus side. A particle's weight of a set is the product of (1 + H)/2 or (1 - H)/2,
 !> which add up to one: u_p = sum over sets of g_s sum over nodes of N v_s.
 module xmpm_sided
    use xmpm_kinds, only: wp
@@ -12,14 +13,14 @@ module xmpm_sided
 
    public :: sided_t, clear_sided, side_weights, most_cracks
 
-   integer, parameter :: most_cracks = 3   !! cracks that one bin can tell apart
+   integer, parameter :: most_cracks = 3   !! cracks and contact groups that one bin can tell apart
 
    !> Rows by side of the bins that need them.
    type :: sided_t
       integer :: n = 0                          !! sided bins
       integer, allocatable :: bin(:, :)         !! (64,blocks) number of the sided bin, 0 for none
       integer, allocatable :: n_cracks(:)       !! (n)
-      integer, allocatable :: crack(:, :)       !! (3,n) cracks in reach
+      integer, allocatable :: crack(:, :)       !! (3,n) cracks in reach; less than 0: contact group
       integer, allocatable :: rows(:, :, :)     !! (nodes,0:7,n) row of each stencil node and set
    end type sided_t
 
@@ -43,7 +44,7 @@ contains
    pure subroutine side_weights(p, chunk, cracks, set, weight, slope)
       type(particles_t), intent(in) :: p
       integer, intent(in) :: chunk
-      integer, intent(in) :: cracks(:)             !! cracks in reach of the bin
+      integer, intent(in) :: cracks(:)             !! cracks and contact groups in reach of the bin
       integer, intent(in) :: set                   !! 0 to 2**size(cracks) - 1
       real(wp), intent(out) :: weight(lanes)       !! g
       real(wp), intent(out) :: slope(lanes, 3)     !! gradient of g [1/length]
@@ -53,6 +54,12 @@ contains
       weight = 1
       slope = 0
       do k = 1, size(cracks)
+         if (cracks(k) < 0) then
+            if ((p%group(p%body(chunk)) == -cracks(k)) .eqv. btest(set, k - 1)) cycle
+            weight = 0
+            slope = 0
+            return
+         end if
          sign = merge(0.5_wp, -0.5_wp, btest(set, k - 1))
          do i = 1, p%count(chunk)
             at = slot_of(p, i, chunk, cracks(k))

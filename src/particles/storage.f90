@@ -10,7 +10,7 @@ module xmpm_storage
    private
 
    public :: particles_t, clear_particles, append_particle, remove_lane, move_lane
-   public :: count_particles, bin_of_chunk, read_record, take_records
+   public :: count_particles, bin_of_chunk, read_record, take_records, new_to_bin
    public :: record_t, new_record, renumber_blocks, attach
    public :: lanes, n_hot, c_x, c_v, c_m, c_vol, c_s
    public :: n_near, near_crack, near_side, near_psi, near_phi, near_jump, near_slope, &
@@ -65,6 +65,8 @@ module xmpm_storage
       real(wp), allocatable :: near(:, :, :)      !! (8,10*slots+10,records) crack slots of the
                                                   !! lanes, and their trace where there is one
       integer, allocatable :: next_attached(:)    !! (records) chain of free near records
+      integer, allocatable :: group(:)            !! (bodies) contact group, from 0; unallocated
+                                                  !! where all bodies share rows
    end type particles_t
 
    !> One particle by itself: what is created, moved between ranks and saved.
@@ -175,6 +177,23 @@ contains
       if (p%attached(c) == 0) call attach(p, c)
       p%near(i, :, p%attached(c)) = record%near
    end subroutine append_particle
+
+   !> Whether a bin holds no particle of a body's contact group yet.
+   pure function new_to_bin(p, bin, body) result(is_new)
+      type(particles_t), intent(in) :: p   !! with contact groups
+      integer, intent(in) :: bin           !! 64 (block - 1) + bin of the block
+      integer, intent(in) :: body
+      logical :: is_new
+      integer :: c
+
+      is_new = .false.
+      c = p%head(1 + mod(bin - 1, bins_per_block), 1 + (bin - 1)/bins_per_block)
+      do while (c > 0)
+         if (p%group(p%body(c)) == p%group(body)) return
+         c = p%next(c)
+      end do
+      is_new = .true.
+   end function new_to_bin
 
    !> Copy a particle out of its lane.
    pure subroutine read_record(p, lane, chunk, record)

@@ -26,7 +26,7 @@ module xmpm_balance
       real(wp) :: damping = 0          !! lost to damping [energy]
       real(wp) :: transfer = 0         !! lost in transfers: PIC, XPIC, USL [energy]
       real(wp) :: plastic = 0          !! plastic work [energy]
-      real(wp) :: contact = 0          !! lost to friction of crack faces [energy]
+      real(wp) :: contact = 0          !! lost in contact: impact and friction [energy]
       real(wp) :: fracture = 0         !! taken by crack growth [energy]
       real(wp) :: error = 0            !! what the balance lacks [energy]
       real(wp) :: relative_error = 0   !! error over the largest energy so far

@@ -50,7 +50,8 @@ contains
       call size_rows(m%grid, 0)
       call list_shared_rows(m%grid, m%comm%rank, m%comm%size, m%sharing)
       m%sided%n = 0
-      m%split_again = size(m%cracks) > 0
+      m%split_again = size(m%cracks) > 0 .or. m%bodies_meet
+      m%contact%n = 0
       if (.not. m%split_again) call fresh_rows(m)
    end subroutine lay_out
 

@@ -29,6 +29,9 @@ contains
       m%ledger%external = 0
       m%ledger%damping = 0
       m%ledger%transfer = 0
+      m%ledger%contact = 0
+      m%contact%lost = 0
+      m%rigid%work = 0
       m%ledger%largest = 0
       m%ledger%time = m%time
       m%nodal_work%external = 0
@@ -50,8 +53,9 @@ contains
          l%strain = [l%strain(2), l%strain(2) + m%tally%work]
          l%damping = [l%damping(2), m%nodal_work%damping]
          l%transfer = [l%transfer(2), m%transfer_loss]
+         l%contact = [l%contact(2), m%contact%lost]
          l%external = [l%external(2), m%nodal_work%external + sum(m%loads%work) &
-            + sum(m%boundaries%work)]
+            + sum(m%boundaries%work) + m%rigid%work]
       end associate
    end subroutine note_energies
 
@@ -61,11 +65,11 @@ contains
       type(model_t), intent(inout) :: m
       logical, intent(in) :: with_momenta   !! whether they are wanted
       type(balance_t), intent(out) :: balance
-      real(wp) :: sums(5)
+      real(wp) :: sums(6)
 
       associate (l => m%ledger)
          sums = [0.5_wp*sum(l%kinetic), l%strain(1), 0.5_wp*sum(l%external), &
-            0.5_wp*sum(l%damping), 0.5_wp*sum(l%transfer)]
+            0.5_wp*sum(l%damping), 0.5_wp*sum(l%transfer), 0.5_wp*sum(l%contact)]
          call sum_all(m%comm, sums)
          balance%time = l%time
          balance%step = max(0_i8, m%step - 1)
@@ -76,7 +80,9 @@ contains
          balance%damping = sums(4)
          balance%transfer = sums(5)
          if (allocated(m%growth)) balance%fracture = sum(m%growth%energy)
-         balance%error = sums(1) - l%kinetic_start + sums(2) + sums(4) + sums(5) - sums(3)
+         balance%contact = sums(6)
+         balance%error = sums(1) - l%kinetic_start + sums(2) + sums(4) + sums(5) + sums(6) &
+            - sums(3)
          l%largest = max(l%largest, sums(1), abs(sums(2)), abs(sums(3)), l%kinetic_start)
          balance%relative_error = 0
          if (l%largest > 0) balance%relative_error = balance%error/l%largest

@@ -19,6 +19,8 @@ module xmpm_model
    use xmpm_crack, only: crack_t
    use xmpm_fracture, only: fracture_t
    use xmpm_growth, only: growth_t
+   use xmpm_contact_pairs, only: contact_t
+   use xmpm_rigid, only: rigid_t
    implicit none
    private
 
@@ -56,6 +58,7 @@ module xmpm_model
                                                !! likewise
       real(wp) :: damping(2) = 0               !! lost to nodal damping, likewise
       real(wp) :: transfer(2) = 0              !! lost in transfers, likewise
+      real(wp) :: contact(2) = 0               !! lost in contact, likewise
       real(wp) :: kinetic_start = 0            !! at the start, all ranks
       real(wp) :: largest = 0                  !! largest energy so far, the measure of the error
    end type ledger_t
@@ -72,6 +75,9 @@ module xmpm_model
       type(crack_t), allocatable :: cracks(:)
       type(fracture_t) :: fracture            !! what is wanted at the fronts, and the last values
       type(growth_t), allocatable :: growth(:)   !! of the cracks that grow
+      type(contact_t) :: contact              !! of bodies
+      type(rigid_t) :: rigid                  !! bodies that do not strain
+      logical :: bodies_meet = .false.        !! the deck asks for contact of bodies
       type(load_t), allocatable :: loads(:)
       type(gravity_t), allocatable :: gravity(:)
       type(boundary_t), allocatable :: boundaries(:)

@@ -12,8 +12,10 @@ module xmpm_settle
    use xmpm_sharing, only: mark_mine
    use xmpm_boundary, only: find_rows
    use xmpm_crack, only: gather_crack, has_drifted, find_near, rule_graded
-   use xmpm_split, only: split_nodes
    use xmpm_grow_cracks, only: grow_cracks
+   use xmpm_split, only: split_nodes, split_t
+   use xmpm_contact_pairs, only: list_pairs
+   use xmpm_rigid, only: list_rigid_rows
    use xmpm_ledger, only: note_energies
    use xmpm_layout, only: admit_blocks, repartition, count_unknown
    use xmpm_model, only: model_t
@@ -67,7 +69,8 @@ contains
       if (allocated(error)) return
       call keep_balance(m, shared_anew, error)
       if (allocated(error)) return
-      m%split_again = m%split_again .or. worst(6) > 0 .or. (worst(4) > 0 .and. size(m%cracks) > 0)
+      m%split_again = m%split_again .or. worst(6) > 0 .or. (worst(4) > 0 &
+         .and. (size(m%cracks) > 0 .or. m%bodies_meet))
       call grow_cracks(m, error)
       if (allocated(error)) return
       call keep_cracks(m, worst(8) > 0 .or. worst(5) > 0 .or. shared_anew, error)
@@ -189,7 +192,7 @@ contains
       logical :: due, drifted
       integer :: i
 
-      if (size(m%cracks) == 0) return
+      if (size(m%cracks) == 0 .and. .not. m%split_again) return
       call start_stage(m%clock, stage_crack)
       due = mod(m%step, crack_interval) == 0
       drifted = .false.
@@ -223,9 +226,11 @@ contains
    subroutine renew_splits(m, error)
       type(model_t), intent(inout) :: m
       type(error_t), allocatable, intent(out) :: error
+      type(split_t) :: split
       integer :: i
 
-      call split_nodes(m%cracks, m%comm, m%particles, m%grid, m%sharing, m%halo, m%sided, error)
+      call split_nodes(m%cracks, m%comm, m%particles, m%grid, m%sharing, m%halo, m%sided, split, &
+         error)
       call agree_on_error(m%comm, error)
       if (allocated(error)) return
       call mark_mine(m%grid, m%sharing, m%comm%rank)
@@ -233,6 +238,9 @@ contains
          call find_rows(m%boundaries(i), m%grid)
       end do
       m%split_again = .false.
+      if (.not. m%bodies_meet) return
+      call list_pairs(m%contact, split, m%grid, m%sharing, m%comm%rank)
+      call list_rigid_rows(m%rigid, split)
    end subroutine renew_splits
 
    !> Time step from the wave speed and the fastest particle, cut at the end of the run.

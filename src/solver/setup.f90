@@ -17,6 +17,7 @@ module xmpm_setup
       find_fastest
    use xmpm_setup_bodies, only: set_up_materials, set_up_bodies, body_plan_t
    use xmpm_setup_conditions, only: set_up_conditions
+   use xmpm_setup_contact, only: read_contact, finish_contact
    use xmpm_setup_cracks, only: read_cracks
    use xmpm_setup_fracture, only: set_up_fracture
    use xmpm_setup_growth, only: set_up_growth
@@ -42,11 +43,13 @@ contains
       call set_up_method(m, deck)
       call read_cracks(deck, m%grid%lattice%size, m%cracks)
       call set_up_materials(m, deck)
+      call read_contact(m, deck)
       allocate (m%loads(0), m%boundaries(0))
       call set_up_bodies(m, deck, plans, error)
       deallocate (m%loads, m%boundaries)
       if (allocated(error)) return
       call set_up_conditions(m, deck, plans)
+      call finish_contact(m, deck, plans)
       call problems(deck, error)
       call agree_on_error(m%comm, error)
       if (allocated(error)) return
@@ -65,7 +68,7 @@ contains
       call renew_level_sets(m, error)
       call agree_on_error(m%comm, error)
       if (allocated(error)) return
-      if (size(m%cracks) > 0) call renew_splits(m, error)
+      if (size(m%cracks) > 0 .or. m%bodies_meet) call renew_splits(m, error)
       if (allocated(error)) return
       call start_ledger(m)
    end subroutine set_up

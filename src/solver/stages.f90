@@ -4,8 +4,8 @@ module xmpm_stages
    use xmpm_halo, only: start_sum, finish_sum
    use xmpm_stage_clock, only: start_stage, stop_stage, stage_p2g, stage_grid, stage_g2p, &
       stage_stress, stage_halo, stage_crack, stage_fracture
-   use xmpm_grid, only: clear_rows
-   use xmpm_momentum, only: force_out_of_balance, advance_momentum, impulse_energy, &
+   use xmpm_grid, only: clear_rows, f_velocity, f_change
+   use xmpm_momentum, only: force_out_of_balance, advance_momentum, add_nodal_work, impulse_energy, &
       blend_change, velocity_from_second, change_from_velocity
    use xmpm_boundary, only: apply_boundary, hold_boundary, region_set
    use xmpm_transfer, only: tally_t, particles_to_grid, update_velocity, smooth_velocity, &
@@ -17,6 +17,7 @@ module xmpm_stages
    use xmpm_curves, only: curve_value
    use xmpm_crack, only: advance_crack
    use xmpm_fracture, only: measure_front
+   use xmpm_meet, only: measure_contact, meet_bodies
    use xmpm_model, only: model_t
    implicit none
    private
@@ -52,6 +53,7 @@ contains
       call start_stage(m%clock, stage_halo)
       call finish_sum(m%halo, m%grid%node, 1, 7)
       call stop_stage(m%clock, stage_halo)
+      if (m%bodies_meet) call measure_contact(m)
    end subroutine map_to_grid
 
    !> Body force that the caller of the library gives; its work is not in the ledger.
@@ -87,15 +89,19 @@ contains
       end do
       rate = 0
       if (m%time < m%options%damped_until) rate = m%options%viscous
-      call advance_momentum(m%grid, dt, body_force, rate, m%nodal_work)
+      call advance_momentum(m%grid, dt, body_force, rate)
       do i = 1, size(m%boundaries)
          call set_velocity(m, i, dt)
          if (m%boundaries(i)%region == region_set) call rows_around_set(m, i)
+      end do
+      if (m%bodies_meet) call meet_bodies(m, f_velocity)
+      do i = 1, size(m%boundaries)
          call apply_boundary(m%boundaries(i), m%grid, dt)
       end do
       do i = 1, size(m%loads)
          m%loads(i)%work = m%loads(i)%work + 0.5_wp*dt*(power(m, i, 2) - power(m, i, 5))
       end do
+      call add_nodal_work(m%grid, dt, body_force, rate, m%nodal_work)
       if (m%relaxing) m%force = force_out_of_balance(m%grid)/dt
       eta = pic_share(m)
       if (loses(m)) then
@@ -226,6 +232,7 @@ contains
       do i = 1, size(m%boundaries)
          call hold_boundary(m%boundaries(i), m%grid, 5)
       end do
+      if (m%bodies_meet) call meet_bodies(m, f_change)
       call stop_stage(m%clock, stage_grid)
    end subroutine map_to_particles
 
@@ -261,6 +268,7 @@ contains
          if (m%boundaries(i)%region == region_set) call rows_around_set(m, i)
          call hold_boundary(m%boundaries(i), m%grid, 5)
       end do
+      if (m%bodies_meet) call meet_bodies(m, f_change)
       call fit_movers(m)
       call update_stress(m%particles, m%bodies, m%kernels, m%sided, m%grid, dt, 0.0_wp, m%tally, &
          m%movers, m%n_movers)
