@@ -16,8 +16,10 @@ contains
    !> Impulses of all pairs on three fields of the rows.
    !>
    !> Where the gap is closed and the rows approach, the difference of their velocities along the
-   !> normal becomes 0, and Coulomb friction acts across it. Momentum of both stays to rounding. Prescribed components count as
-   !> those of an infinite mass. With `whole` they take the impulse all the same, so that the condition
+   !> normal becomes 0, and Coulomb friction acts across it. Momentum of both stays to rounding.
+   !> Prescribed components count as
+   !> those of an infinite mass. With `whole` they take the impulse all the same, so that the
+   !> condition
    !> which holds them finds it as a reaction; and the impulses are kept.
    subroutine apply_impulses(contact, grid, field, whole)
       type(contact_t), intent(inout) :: contact
@@ -123,7 +125,8 @@ contains
       impulse = impulse - across*t
    end subroutine impulse_between
 
-   !> Impulse that keeps a pair which the nodal update found in contact: the normal velocities become
+   !> Impulse that keeps a pair which the nodal update found in contact: the normal velocities
+   !> become
    !> one, also where they separate, for else the stress would do work that no motion gives back.
    pure subroutine keep_closed(contact, grid, i, field, impulse)
       type(contact_t), intent(in) :: contact

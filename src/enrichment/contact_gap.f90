@@ -1,8 +1,10 @@
 !> The common normal and the gap of two bodies at the nodes that both reach.
 !>
-!> Each body's own normal points from the centre of its part around the node to the node. It is right
+!> Each body's own normal points from the centre of its part around the node to the node. It is
+!> right
 !> where the body is flat there and wrong at its corners; a flat body spreads as far across its
-!> normal as the shape function does. So the common normal is the sum of both centres' distances from
+!> normal as the shape function does. So the common normal is the sum of both centres' distances
+!> from
 !> the node, each with a weight by that spread.
 !>
 !> The gap along the normal n is that between the particles of both bodies around the node, which
@@ -205,7 +207,8 @@ contains
       end do
    end subroutine widen
 
-   !> How far particles reach from their middle. Of the cells of a body of shapes, cut by a flat face
+   !> How far particles reach from their middle. Of the cells of a body of shapes, cut by a flat
+   !> face
    !> or strained in one direction, it is half the thickness.
    pure function radii(volume, spacing) result(radius)
       real(wp), intent(in) :: volume(lanes)   !! [length^3]

@@ -1,8 +1,10 @@
 !> Rigid bodies: all rows of one move with one velocity, found from all forces and contacts on it.
 !>
 !> They move without turning. A body of mass M that would have the velocity V* after the step takes
-!> the sum F(V) of the impulses that contact with it at the velocity V brings: M (V - V*) = F(V), solved by
-!> Newton's method, so that a light body on many nodes does not bounce between two steps. The impulses
+!> the sum F(V) of the impulses that contact with it at the velocity V brings: M (V - V*) = F(V),
+!> solved by
+!> Newton's method, so that a light body on many nodes does not bounce between two steps. The
+!> impulses
 !> then given are summed once more, and V follows from that sum: momentum is kept to rounding.
 module xmpm_rigid
    use xmpm_kinds, only: wp
@@ -65,7 +67,8 @@ contains
       rigid%owner = rigid%owner(:n)
    end subroutine list_rigid_rows
 
-   !> Mass and velocities of the bodies before and after the nodal update, which has done its work on
+   !> Mass and velocities of the bodies before and after the nodal update, which has done its work
+   !> on
    !> all rows; without contact yet. Collective.
    subroutine predict_motion(rigid, comm, grid)
       type(rigid_t), intent(inout) :: rigid
@@ -130,7 +133,8 @@ contains
       end do
    end subroutine prescribe
 
-   !> Impulses on each body and their decrease with its velocity, of the pairs that this rank counts.
+   !> Impulses on each body and their decrease with its velocity, of the pairs that this rank
+   !> counts.
    subroutine sum_contact(rigid, contact, grid, sums)
       type(rigid_t), intent(in) :: rigid
       type(contact_t), intent(in) :: contact

@@ -35,7 +35,8 @@ module xmpm_split
       integer, allocatable :: n_cracks(:)    !! (n) cracks that split it
       integer, allocatable :: crack(:, :)    !! (3,n) which; less than 0: contact group
       integer, allocatable :: first(:)       !! (n) first further row
-      integer, allocatable :: groups(:)      !! (ordinary rows) bit of each contact group that reaches
+      integer, allocatable :: groups(:)      !! (ordinary rows) bit of each contact group that
+                                             !! reaches
                                              !! the node; of size 0 without contact
    end type split_t
 

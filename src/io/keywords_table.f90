@@ -118,7 +118,8 @@ contains
       call add_key(t, key_t(name='friction', range=not_negative, default='0', &
          meaning='coefficient of Coulomb friction'))
       call add_key(t, key_t(name='normal', least=3, most=3, &
-         meaning='of the faces that meet, from the body that stands first in the deck; found where'// &
+         meaning='of the faces that meet, from the body that stands first in the deck; found '// &
+         'where'// &
          ' not given'))
    end subroutine add_materials_and_bodies
 

@@ -31,7 +31,8 @@ contains
       type(grid_t), intent(in) :: grid
       integer, intent(in) :: movers(:)          !! chunks that particles left
       type(outbox_t), intent(inout) :: outbox
-      logical, intent(inout) :: near_moved      !! set where a particle near a crack changed its bin,
+      logical, intent(inout) :: near_moved      !! set where a particle near a crack changed its
+                                                !! bin,
                                                 !! or the first of a contact group came to a bin
       type(record_t) :: record
       integer :: i, c, lane, b, to

@@ -5,7 +5,8 @@ module xmpm_stages
    use xmpm_stage_clock, only: start_stage, stop_stage, stage_p2g, stage_grid, stage_g2p, &
       stage_stress, stage_halo, stage_crack, stage_fracture
    use xmpm_grid, only: clear_rows, f_velocity, f_change
-   use xmpm_momentum, only: force_out_of_balance, advance_momentum, add_nodal_work, impulse_energy, &
+   use xmpm_momentum, only: force_out_of_balance, advance_momentum, add_nodal_work, &
+      impulse_energy, &
       blend_change, velocity_from_second, change_from_velocity
    use xmpm_boundary, only: apply_boundary, hold_boundary, region_set
    use xmpm_transfer, only: tally_t, particles_to_grid, update_velocity, smooth_velocity, &
