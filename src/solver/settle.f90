@@ -114,25 +114,37 @@ contains
       end do
    end function first_unsound
 
-   !> Name the fastest particle of this rank, '' where it has none.
+   !> Name the fastest particle of this rank, also of those on their way out; '' where it has none.
    pure function fastest(m) result(text)
       type(model_t), intent(in) :: m
       character(len=:), allocatable :: text
-      real(wp) :: speed, v
+      real(wp) :: speed
       integer :: c, i
 
       text = ''
       speed = -1
       do c = 1, m%particles%n_chunks
          do i = 1, m%particles%count(c)
-            v = norm2(m%particles%q(i, c_v:c_v + 2, c))
-            if (.not. v > speed) cycle
-            speed = v
-            text = '; particle '//to_text(m%particles%id(i, c))//' at '// &
-               to_text(m%particles%q(i, 1:3, c))//' has the speed '//to_text(v)
+            call name_faster(m%particles%id(i, c), m%particles%q(i, :, c), speed, text)
          end do
       end do
+      do i = 1, m%outbox%n
+         call name_faster(m%outbox%records(i)%id, m%outbox%records(i)%hot, speed, text)
+      end do
    end function fastest
+
+   !> Name a particle if it is faster than all before.
+   pure subroutine name_faster(id, hot, speed, text)
+      integer(i8), intent(in) :: id
+      real(wp), intent(in) :: hot(:)
+      real(wp), intent(inout) :: speed
+      character(len=:), allocatable, intent(inout) :: text
+
+      if (.not. norm2(hot(c_v:c_v + 2)) > speed) return
+      speed = norm2(hot(c_v:c_v + 2))
+      text = '; particle '//to_text(id)//' at '//to_text(hot(1:3))//' has the speed '// &
+         to_text(speed)
+   end subroutine name_faster
 
    pure function when_it_is(m) result(text)
       type(model_t), intent(in) :: m
