@@ -16,7 +16,7 @@ from verify.fronts import amplitudes, read_front, rms
 from verify.solids import Solid, penny_k, tension
 
 SOLID = Solid(20.0e3, 0.298, 7.9e-3)  # MPa, g/mm3
-RADIUS, PULL = 10.0, 40.0  # mm, MPa
+RADIUS, LENGTH, PULL = 10.0, 90.0, 40.0  # mm, MPa
 SLOPE = np.deg2rad(30.0)
 NORMAL = np.array([np.sin(SLOPE), 0.0, np.cos(SLOPE)])
 K_0 = 2 * PULL * np.sqrt(RADIUS / np.pi)
@@ -35,10 +35,10 @@ DECK = """
   disc, centre = 0 0 0, along = @along@, across = 0 1 0, radius = @radius@, element = 0.5*h
 *LOAD     face = rod:+z, traction = 0 0 @pull@
 *LOAD     face = rod:-z, traction = 0 0 -@pull@
-*RELAX    method = kinetic, residual = 1e-3, limit = @limit@
-*TIME     end = @limit@, steps = 0
+*TIME     end = @end@
+*DAMPING  viscous = @rate@
 *OUTPUT   particles = none, crack = opening
-*FRACTURE at = 0, cracks = penny, radii = 3*h 4*h 5*h
+*FRACTURE at = @end@, cracks = penny, radii = 3*h 4*h 5*h
 *END
 """
 
@@ -56,7 +56,8 @@ def rows(full: bool) -> Iterator[Row]:
             pull=PULL,
             along=along,
             radius=RADIUS,
-            limit=100 * 50 / SOLID.c_d,
+            end=15 * LENGTH / SOLID.c_d,
+            rate=2 * SOLID.c_d / LENGTH,
         )
         run = run_deck(deck, ranks=2)
         front = read_front(run)
