@@ -15,10 +15,10 @@ from xmpm_post.table import Table, read_table
 QUANTITIES = ("K_I", "K_II", "K_III", "J")
 # Bits of the column `flags`.
 FLAGS = {
-    1: "domain leaves the body",
-    2: "meets another front",
-    4: "at a boundary condition",
-    8: "at a free surface",
+    1: "no domain fits into the body",
+    2: "another crack in the domain",
+    4: "boundary condition in the domain",
+    8: "end of the front",
     16: "faces closed",
     32: "smaller radius used",
 }

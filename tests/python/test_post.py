@@ -35,6 +35,7 @@ DECK = """
 *LOAD     face = block:-z, traction = 0 0 -100
 *TIME     end = 0.004
 *OUTPUT   every = 0.002, history = 0.001
+*FRACTURE every = 0.001, radii = 4
 *END
 """
 
@@ -182,6 +183,11 @@ def test_a_true_run_is_read_step_by_step(true_run):
     front = crack.points[crack.lines[0]]
     assert np.linalg.norm(front, axis=1) == pytest.approx(6, rel=1e-3)  # a disc of radius 6
     assert crack.lines[0][0] == crack.lines[0][-1]
+    rows = run.front.where(time=0.004)
+    assert np.hypot(rows["x"], rows["y"]) == pytest.approx(6, rel=1e-3)
+    assert (rows["K_I_low"] <= rows["K_I"]).all()
+    assert (rows["K_I"] <= rows["K_I_high"]).all()
+    assert rows["K_I"].min() > 0  # pulled open
 
 
 # --- commands ----------------------------------------------------------------------------------
@@ -196,7 +202,7 @@ def test_k_draws_history_and_front(run, kind, capsys):
         assert str(path) in said
         assert path.stat().st_size > 5000
         assert kind == "pdf" or picture_has_colours(path, 0.002)
-    assert "free surface 3" in said  # point 1 at three times
+    assert "end of the front 3" in said  # point 1 at three times
 
 
 def test_k_takes_points_times_quantities_and_references(run, tmp_path):
@@ -263,6 +269,9 @@ def test_verify_draws_a_figure_a_case(tmp_path, capsys):
 def test_all_commands_draw_a_true_run(true_run):
     renderer = "pyvista" if can_render() else "matplotlib"
     assert main(["energy", str(true_run)]) == 0
+    assert main(["k", str(true_run), "--format", "png"]) == 0
+    assert picture_has_colours(true_run / "small_k_time.png", 0.002)
+    assert main(["crack", str(true_run), "--along", "K_I", "--renderer", renderer]) == 0
     for command in ("crack", "jump"):
         assert main([command, str(true_run), "--renderer", renderer]) == 0
         assert picture_has_colours(true_run / f"small_{command}.png", 0.05)

@@ -58,7 +58,7 @@ def rows(full: bool) -> Iterator[Row]:
             end=END,
             radii=RADII[h],
         )
-        run = run_deck(deck, ranks=2)
+        run = run_deck(deck)
         front = read_front(run)
         limits = (0.04, 0.03) if h <= 2.5 else (None, None)
         for column, axis in (("minor_end", 1), ("major_end", 2)):

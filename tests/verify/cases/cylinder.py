@@ -59,7 +59,7 @@ def rows(full: bool) -> Iterator[Row]:
             end=15 * LENGTH / SOLID.c_d,
             rate=2 * SOLID.c_d / LENGTH,
         )
-        run = run_deck(deck, ranks=2)
+        run = run_deck(deck)
         front = read_front(run)
         exact = penny_k(
             tension(PULL, np.array([0.0, 0.0, 1.0])), NORMAL, np.zeros(3), RADIUS,

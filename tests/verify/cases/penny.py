@@ -98,7 +98,7 @@ def make_deck(
 
 def straight(cells: int, width: float, **options: str) -> tuple[Run, np.ndarray]:
     """Run a quarter block; K_I along the front over its exact value."""
-    run = run_deck(make_deck(cells, width, **options), ranks=2 if cells > 6 else 1)
+    run = run_deck(make_deck(cells, width, **options))
     return run, read_front(run).k()[0] / K_0
 
 
@@ -111,7 +111,7 @@ def inclined(number: int, cells: int, width: float) -> tuple[Run, np.ndarray, np
     aside = np.cos(around) * frame[0] + np.sin(around) * frame[1]
     stress = tension(PULL, np.cos(slope) * frame[2] + np.sin(slope) * aside)
     deck = make_deck(cells, width, quarter=False, centre=centre, frame=frame, stress=stress)
-    run = run_deck(deck, ranks=2)
+    run = run_deck(deck)
     front = read_front(run)
     exact = penny_k(stress, frame[2], centre, RADIUS, front.points[-1], STEEL.poisson)
     return run, front.k(), exact

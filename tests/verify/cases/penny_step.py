@@ -74,7 +74,7 @@ def rows(full: bool) -> Iterator[Row]:
                 unit=UNIT,
                 pic=part / (0.5 * h / STEEL.c_d),
             )
-            run = run_deck(deck, ranks=2 if cells > 6 else 1)
+            run = run_deck(deck)
             front = read_front(run)
             t, k = front.times / UNIT, front["K_I"].mean(axis=1) / K_0
             value, at = peak(t, k)

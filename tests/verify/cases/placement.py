@@ -64,10 +64,10 @@ def static_rows(full: bool) -> Iterator[Row]:
     for cells in (6, 9, 12) if full else (6, 7, 9):
         h = RADIUS / cells
         for place, options in places(h).items():
-            run = run_deck(make_deck(cells, WIDTHS[0], quarter=False, **options), ranks=2)
+            run = run_deck(make_deck(cells, WIDTHS[0], quarter=False, **options))
             ratio = read_front(run).k()[0] / K_0
             if box is None:
-                wide = run_deck(make_deck(cells, WIDTHS[1], quarter=False, **options), ranks=2)
+                wide = run_deck(make_deck(cells, WIDTHS[1], quarter=False, **options))
                 box = box_factor(ratio.mean(), (read_front(wide).k()[0] / K_0).mean(), *WIDTHS)
             ratio = ratio / box
             yield Row.of("placement", place, h, run, "mean K_I / exact", ratio.mean(), 1.0, 0.01)
@@ -96,7 +96,7 @@ def follow(
         rise=rise * beat,
         end=end * beat,
     )
-    run = run_deck(deck, ranks=2)
+    run = run_deck(deck)
     return run, read_front(run)
 
 
