@@ -20,6 +20,7 @@ module xmpm_domain_integral
    private
 
    public :: domain_sums_t, domain_shape_t, sum_domains, plateau_area, clear_sums
+   public :: points_near, full
 
    !> The field q.
    type :: domain_shape_t
@@ -189,6 +190,7 @@ contains
       area = pi*inner**2 + pi*(inner*d + d*d*(0.5_wp - 2/pi**2))
    end function plateau_area
 
+   !> A symmetric tensor from its components 11 22 33 12 23 13.
    pure function full(s) result(t)
       real(wp), intent(in) :: s(6)
       real(wp) :: t(3, 3)

@@ -7,10 +7,13 @@ module exact_cracks
    use xmpm_front, only: front_test_points, mark_front
    use xmpm_crack, only: crack_t
    use xmpm_samples, only: sample_t, place_sample
+   use xmpm_near_tip, only: near_tip_fields, strain_of
+   use penny_field, only: penny_at
+   use running_tip, only: tip_at
    implicit none
    private
 
-   public :: make_penny, make_straight, fill_box
+   public :: make_penny, make_straight, fill_box, give_penny, give_running
 
 contains
 
@@ -84,4 +87,63 @@ contains
       end do
       samples = samples(:n)
    end subroutine fill_box
+
+   !> The field of a penny under tension along z.
+   subroutine give_penny(s, centre, a, tension, lambda, mu)
+      type(sample_t), intent(inout) :: s
+      real(wp), intent(in) :: centre(3), a, tension, lambda, mu
+      real(wp) :: gradient(3, 3), poisson
+      integer :: i
+
+      s%density = 1
+      s%lambda = lambda
+      s%mu = mu
+      poisson = 0.5_wp*lambda/(lambda + mu)
+      call penny_at(s%x - centre, a, tension, 2*mu*(1 + poisson), poisson, s%stress, gradient)
+      s%back = -gradient
+      do i = 1, 3
+         s%back(i, i) = 1 - gradient(i, i)
+      end do
+      s%work = density_of(s%stress, mu, poisson)
+   end subroutine give_penny
+
+   !> Mode I with K = 1 at a straight front along y, at rest or moving along x.
+   subroutine give_running(s, tip, speed, lambda, mu, density)
+      type(sample_t), intent(inout) :: s
+      real(wp), intent(in) :: tip(3), speed, lambda, mu, density
+      real(wp) :: gradient(3, 3), second(3), t(6), g(3, 3), unit(6, 3), x, y, poisson
+
+      x = s%x(1) - tip(1)
+      y = s%x(3) - tip(3)
+      poisson = 0.5_wp*lambda/(lambda + mu)
+      if (speed > 0) then
+         call tip_at(x, y, speed, lambda, mu, density, gradient, t, second)
+      else
+         call near_tip_fields(x, y, s%side, mu, poisson, unit, g)
+         t = unit(:, 1)
+         gradient = 0
+         gradient(:, 1) = g(:, 1)
+         second = 0
+      end if
+      s%lambda = lambda
+      s%mu = mu
+      s%density = density
+      ! the field has its second axis along z, its third along -y
+      s%stress = [t(1), t(3), t(2), 0.0_wp, 0.0_wp, t(4)]
+      s%work = density_of(s%stress, mu, poisson)
+      s%back = 0
+      s%back(:, 1) = [1 - gradient(1, 1), 0.0_wp, -gradient(2, 1)]
+      s%v = -speed*[gradient(1, 1), 0.0_wp, gradient(2, 1)]
+      s%rate = 0
+      s%rate(:, 1) = -speed*[second(1), 0.0_wp, second(2)]
+      s%pull = s%volume*density*speed**2*[second(1), 0.0_wp, second(2)]
+   end subroutine give_running
+
+   !> Energy of a stress.
+   pure function density_of(stress, mu, poisson) result(w)
+      real(wp), intent(in) :: stress(6), mu, poisson
+      real(wp) :: w
+
+      w = 0.5_wp*sum(stress*strain_of(stress, mu, poisson)*real([1, 1, 1, 2, 2, 2], wp))
+   end function density_of
 end module exact_cracks

@@ -6,11 +6,11 @@ program test_running_front
    use xmpm_samples, only: sample_t
    use xmpm_front_points, only: front_points_t, list_points, window_length
    use xmpm_domain_integral, only: domain_sums_t, domain_shape_t, sum_domains, clear_sums
-   use xmpm_near_tip, only: near_tip_fields, strain_of
+   use xmpm_near_tip, only: near_tip_fields
    use xmpm_velocity_functions, only: elastic_constants_t, elastic_constants, velocity_functions, &
       release_rate
    use xmpm_material_drift, only: drift_sums, drift_of
-   use exact_cracks, only: make_straight, fill_box
+   use exact_cracks, only: make_straight, fill_box, give_running
    use running_tip, only: tip_at
    use testing, only: suite_t, check, check_close, finish
    implicit none
@@ -98,7 +98,7 @@ contains
          radii(3), &
          samples)
       do i = 1, size(samples)
-         call give_field(samples(i), tip, speed)
+         call give_running(samples(i), tip, speed, lambda, mu, density)
          samples(i)%v = samples(i)%v + flight
       end do
       call clear_sums(sums, 3, points%n)
@@ -110,34 +110,4 @@ contains
          /release_rate(e, velocity_functions(e, speed), [1.0_wp, 0.0_wp, 0.0_wp]))
    end subroutine measure
 
-   !> Mode I with K = 1, at rest or moving.
-   subroutine give_field(s, tip, speed)
-      type(sample_t), intent(inout) :: s
-      real(wp), intent(in) :: tip(3), speed
-      real(wp) :: gradient(3, 3), second(3), t(6), g(3, 3), unit(6, 3), x, y
-
-      x = s%x(1) - tip(1)
-      y = s%x(3) - tip(3)
-      if (speed > 0) then
-         call tip_at(x, y, speed, lambda, mu, density, gradient, t, second)
-      else
-         call near_tip_fields(x, y, s%side, mu, e%poisson, unit, g)
-         t = unit(:, 1)
-         gradient = 0
-         gradient(:, 1) = g(:, 1)
-         second = 0
-      end if
-      s%lambda = lambda
-      s%mu = mu
-      s%density = density
-      ! the field has its second axis along z, its third along -y
-      s%stress = [t(1), t(3), t(2), 0.0_wp, 0.0_wp, t(4)]
-      s%work = 0.5_wp*sum(s%stress*strain_of(s%stress, mu, e%poisson)*real([1, 1, 1, 2, 2, 2], wp))
-      s%back = 0
-      s%back(:, 1) = [1 - gradient(1, 1), 0.0_wp, -gradient(2, 1)]
-      s%v = -speed*[gradient(1, 1), 0.0_wp, gradient(2, 1)]
-      s%rate = 0
-      s%rate(:, 1) = -speed*[second(1), 0.0_wp, second(2)]
-      s%pull = s%volume*density*speed**2*[second(1), 0.0_wp, second(2)]
-   end subroutine give_field
 end program test_running_front
