@@ -3,6 +3,7 @@
 import argparse
 import importlib
 import pkgutil
+import signal
 import sys
 
 from xmpm_prep import __version__, commands
@@ -45,6 +46,7 @@ def main(arguments=None):
         options = make_parser().parse_args(arguments)
     except PrepError as failure:
         return report(failure, failure.code)
+    previous = signal.signal(signal.SIGTERM, _interrupt)  # so that temporary files go away
     try:
         return options.run(options) or 0
     except PrepError as failure:
@@ -62,6 +64,12 @@ def main(arguments=None):
         if options.traceback:
             raise
         return report(f"this should not happen: {type(failure).__name__}: {failure}", 1)
+    finally:
+        signal.signal(signal.SIGTERM, previous)
+
+
+def _interrupt(_number, _frame):
+    raise KeyboardInterrupt
 
 
 def report(failure, code):

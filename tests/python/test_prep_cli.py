@@ -1,8 +1,10 @@
 """The command line of xmpm-prep: one line for each error, files that are whole or not there."""
 
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import h5py
 import meshio
@@ -106,6 +108,21 @@ def test_companions_open_in_vtk_and_meshio_without_a_copy(tmp_path):
         assert result.GetNumberOfPoints() == 10
         assert result.GetPointData().GetArray("volumes").GetValue(7) == 7
     assert link.stat().st_size < 10_000  # a link, no copy
+
+
+def test_stopped_command_leaves_nothing(tmp_path, monkeypatch, capsys):
+    from xmpm_prep.commands import deck
+
+    def stopped(options):
+        with whole_files(tmp_path / "a.txt") as (path,):
+            path.write_text("half")
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(5)
+
+    monkeypatch.setattr(deck, "run", stopped)
+    assert main(["deck", "x.h5"]) == 130
+    assert capsys.readouterr().err == "xmpm-prep: stopped\n"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_package_runs_as_a_module():
