@@ -24,7 +24,7 @@ module xmpm_fracture
    implicit none
    private
 
-   public :: fracture_t, start_traces, measure_front
+   public :: fracture_t, start_traces, measure_front, release_range
 
    !> What the deck wants, and what was found last.
    type :: fracture_t
@@ -34,6 +34,7 @@ module xmpm_fracture
       type(domain_shape_t) :: shape                 !! of the domains
       real(wp) :: behind = 0                        !! where openings are taken [length]
       type(front_values_t), allocatable :: values(:)   !! of each crack in the list, last time
+      logical :: measured = .false.                 !! there are values
    end type fracture_t
 
 contains
@@ -109,7 +110,22 @@ contains
          call flag_neighbours(cracks, number, values)
       end associate
       fracture%values(which) = values
+      fracture%measured = .true.
    end subroutine measure_front
+
+   !> Least and largest J of all fronts, as measured last.
+   pure function release_range(fracture) result(range)
+      type(fracture_t), intent(in) :: fracture
+      real(wp) :: range(2)   !! [energy/length^2]
+      integer :: i
+
+      range = [huge(1.0_wp), -huge(1.0_wp)]
+      do i = 1, size(fracture%values)
+         if (.not. allocated(fracture%values(i)%j)) cycle
+         range(1) = min(range(1), minval(fracture%values(i)%j))
+         range(2) = max(range(2), maxval(fracture%values(i)%j))
+      end do
+   end function release_range
 
    !> Where the material ends along each open front. Collective.
    subroutine find_ends(front, comm, h, samples, points)

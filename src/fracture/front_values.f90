@@ -23,6 +23,8 @@ module xmpm_front_values
    integer, parameter :: flag_smaller = 32   !! not all radii fit: the largest that does is used
 
    real(wp), parameter :: volume_error = 0.05_wp   !! a domain with less material leaves the body
+   real(wp), parameter :: overlap = 1e-9_wp        !! of the faces, over the distance behind the
+                                                   !! front, from which they are closed
 
    !> What is known at the points of one crack's fronts at one time.
    type :: front_values_t
@@ -94,7 +96,7 @@ contains
       associate (e => values%material(i))
          a = velocity_functions(e, values%speed(i))
          opening = opening_behind(crack, values%points, i, behind)
-         if (opening(1) < 0) values%flags(i) = values%flags(i) + flag_closed
+         if (opening(1) < -overlap*behind) values%flags(i) = values%flags(i) + flag_closed
          opening(1) = max(opening(1), 0.0_wp)
          do r = 1, n
             k(:, r, 1) = split_rate(e, a, j(r), opening)

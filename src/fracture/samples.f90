@@ -4,7 +4,7 @@ module xmpm_samples
    use xmpm_lattice, only: bin_corner
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, lanes, bin_of_chunk, is_traced, c_x, c_v, c_m, c_vol, c_s, &
-      n_near, near_crack, near_side, near_psi, trace_f, trace_work
+      n_hot, n_near, near_crack, near_psi, n_trace, trace_f, trace_work
    use xmpm_kernels, only: kernels_t
    use xmpm_sided, only: sided_t
    use xmpm_transfer, only: bodies_t
@@ -133,24 +133,25 @@ contains
       type(particles_t), intent(in) :: p
       integer, intent(in) :: c, lane, number
       type(sample_t), intent(out) :: s
-      integer :: k
+      real(wp) :: trace(n_trace), q(n_hot)
+      integer :: k, r
 
-      associate (near => p%near(lane, :, p%attached(c)), q => p%q(lane, :, c))
-         associate (trace => near(p%trace + 1:))
-            if (.not. any(abs(trace(trace_f:trace_f + 8)) > 0)) return
-            s%x = q(c_x:c_x + 2)
-            s%v = q(c_v:c_v + 2)
-            s%volume = q(c_vol)
-            s%density = q(c_m)/q(c_vol)
-            s%stress = q(c_s:c_s + 5)
-            s%work = trace(trace_work)/q(c_vol)
-            s%back = inverse(rows_of(trace(trace_f:trace_f + 8)))
-         end associate
-         s%side = 0
-         do k = 0, n_near*(p%slots - 1), n_near
-            if (nint(near(k + near_crack)) == number) s%side = sign(1.0_wp, near(k + near_psi))
-         end do
-      end associate
+      r = p%attached(c)
+      trace = p%near(lane, p%trace + 1:p%trace + n_trace, r)
+      if (.not. any(abs(trace(trace_f:trace_f + 8)) > 0)) return
+      q = p%q(lane, :, c)
+      s%x = q(c_x:c_x + 2)
+      s%v = q(c_v:c_v + 2)
+      s%volume = q(c_vol)
+      s%density = q(c_m)/q(c_vol)
+      s%stress = q(c_s:c_s + 5)
+      s%work = trace(trace_work)/q(c_vol)
+      s%back = inverse(rows_of(trace(trace_f:trace_f + 8)))
+      s%side = 0
+      do k = 0, n_near*(p%slots - 1), n_near
+         if (nint(p%near(lane, k + near_crack, r)) /= number) cycle
+         s%side = sign(1.0_wp, p%near(lane, k + near_psi, r))
+      end do
    end subroutine read_lane
 
    !> A matrix from its rows one after the other.

@@ -19,6 +19,7 @@ module xmpm_progress
       real(wp) :: dt = 0                !! last step
       real(wp) :: energy_error = 0      !! balance error over the largest energy
       real(wp) :: imbalance = 1         !! most particles of a rank over the mean
+      real(wp), allocatable :: release(:)   !! least and largest J of the fronts, where it is known
    end type run_state_t
 
    !> What has been done since the start, and since the last line.
@@ -123,6 +124,9 @@ contains
          left_text(done, elapsed), speed_text(progress%work - progress%work_shown, interval), &
          speed_text(progress%work, elapsed), state%energy_error, state%imbalance
       line = trim(buffer)
+      if (.not. allocated(state%release)) return
+      write (buffer, '(a,es9.2,a,es9.2)') '  J', state%release(1), ' to', state%release(2)
+      line = line//trim(buffer)
    end function progress_line
 
    function left_text(done, elapsed) result(text)

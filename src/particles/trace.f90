@@ -2,7 +2,7 @@
 !> which the J integral needs beside the stress.
 module xmpm_trace
    use xmpm_kinds, only: wp
-   use xmpm_storage, only: particles_t, lanes, trace_f, trace_work
+   use xmpm_storage, only: particles_t, lanes, n_trace, trace_f, trace_work
    implicit none
    private
 
@@ -16,13 +16,17 @@ contains
       integer, intent(in) :: lane, chunk
       real(wp), intent(in) :: strain(6)   !! that goes with the stress now: xx yy zz xy yz xz
       real(wp), intent(in) :: work        !! stored in the particle now [energy]
+      real(wp) :: trace(n_trace)
+      integer :: first, last
 
-      associate (trace => p%near(lane, p%trace + 1:, p%attached(chunk)))
-         if (any(abs(trace(trace_f:trace_f + 8)) > 0)) return
-         trace(trace_f:trace_f + 8) = [1 + strain(1), strain(4), strain(6), &
-            strain(4), 1 + strain(2), strain(5), strain(6), strain(5), 1 + strain(3)]
-         trace(trace_work) = work
-      end associate
+      first = p%trace + 1
+      last = p%trace + n_trace
+      trace = p%near(lane, first:last, p%attached(chunk))
+      if (any(abs(trace(trace_f:trace_f + 8)) > 0)) return
+      trace(trace_f:trace_f + 8) = [1 + strain(1), strain(4), strain(6), &
+         strain(4), 1 + strain(2), strain(5), strain(6), strain(5), 1 + strain(3)]
+      trace(trace_work) = work
+      p%near(lane, first:last, p%attached(chunk)) = trace
    end subroutine start_trace
 
    !> Carry the traces of a chunk through a step: F' = (1 + dt L + (dt L)**2/2) F, exact to second

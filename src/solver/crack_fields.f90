@@ -4,12 +4,16 @@ module xmpm_crack_fields
    use xmpm_text, only: string_t
    use xmpm_front, only: front_t
    use xmpm_crack, only: crack_t, gather_crack
+   use xmpm_fracture, only: fracture_t
    use xmpm_vtkhdf, only: field_t, drawn_t => surface_t
    use xmpm_model, only: model_t
    implicit none
    private
 
-   public :: collect_cracks, crack_fields
+   public :: collect_cracks, crack_fields, add_front_fields
+
+   character(len=5), parameter :: front_fields(4) = [character(len=5) :: 'J', 'K_I', 'K_II', &
+      'K_III']
 
 contains
 
@@ -34,6 +38,21 @@ contains
       end do
    end subroutine crack_fields
 
+   !> Fields that *FRACTURE brings: the values at the front points as they were measured last, 0
+   !> elsewhere.
+   pure subroutine add_front_fields(release_rate, toughness, names, units)
+      character(len=*), intent(in) :: release_rate, toughness    !! units
+      type(string_t), allocatable, intent(inout) :: names(:)     !! of the fields
+      type(string_t), allocatable, intent(inout) :: units(:)     !! of each
+      integer :: i
+
+      do i = 1, size(front_fields)
+         names = [names, string_t(trim(front_fields(i)))]
+         units = [units, string_t(toughness)]
+      end do
+      units(size(units) - 3)%s = release_rate
+   end subroutine add_front_fields
+
    !> All cracks as one surface. The model's own cracks stay as they are, so that a run does not
    !> depend on its output. Collective.
    subroutine collect_cracks(m, names, units, drawn, fields)
@@ -51,7 +70,11 @@ contains
       do i = 1, size(cracks)
          call gather_crack(cracks(i), m%comm, m%grid, .true.)
          do k = 1, size(fields)
-            call fill_field(cracks(i), i, first, fields(k))
+            if (any(front_fields == fields(k)%name)) then
+               call fill_front_field(m%fracture, cracks(i), i, first, fields(k))
+            else
+               call fill_field(cracks(i), i, first, fields(k))
+            end if
          end do
          associate (s => cracks(i)%surface)
             drawn%points(:, first + 1:first + s%vertex_count) = s%x
@@ -80,8 +103,8 @@ contains
          select case (names(k)%s)
          case ('crack')
             allocate (fields(k)%ids(n))
-         case ('opening_normal')
-            allocate (fields(k)%values(1, n))
+         case ('opening_normal', 'J', 'K_I', 'K_II', 'K_III')
+            allocate (fields(k)%values(1, n), source=0.0_wp)
          case default
             allocate (fields(k)%values(3, n))
          end select
@@ -112,6 +135,29 @@ contains
          end select
       end associate
    end subroutine fill_field
+
+   !> Last values at the front points of one crack.
+   pure subroutine fill_front_field(fracture, crack, number, first, field)
+      type(fracture_t), intent(in) :: fracture
+      type(crack_t), intent(in) :: crack
+      integer, intent(in) :: number              !! of the crack
+      integer, intent(in) :: first               !! vertices of the cracks before
+      type(field_t), intent(inout) :: field
+      integer :: at, mode
+
+      at = findloc(fracture%cracks, number, 1)
+      if (at == 0) return
+      if (.not. allocated(fracture%values(at)%j)) return
+      if (size(fracture%values(at)%j) /= crack%front%node_count) return
+      associate (v => fracture%values(at), vertex => first + crack%front%vertex)
+         mode = findloc(front_fields, field%name, 1) - 1
+         if (mode == 0) then
+            field%values(1, vertex) = v%j
+         else
+            field%values(1, vertex) = v%k(mode, :)
+         end if
+      end associate
+   end subroutine fill_front_field
 
    !> Each chain of a front becomes a line; a closed one ends at its first point.
    pure subroutine add_fronts(front, first, drawn)

@@ -13,7 +13,7 @@ module xmpm_results
    use xmpm_balance, only: balance_t, balance_names, balance_units, balance_cells
    use xmpm_probes, only: probe_t, read_probes, probe_names, probe_units, probe_values
    use xmpm_particle_fields, only: collect_particles, particle_unit
-   use xmpm_crack_fields, only: collect_cracks, crack_fields
+   use xmpm_crack_fields, only: collect_cracks, crack_fields, add_front_fields
    use xmpm_front_table, only: front_names, front_units, write_fronts
    use xmpm_model, only: model_t
    implicit none
@@ -52,7 +52,7 @@ contains
       character(len=:), allocatable :: path
 
       results%provenance = provenance
-      call read_output(deck, size(m%cracks), results)
+      call read_output(deck, size(m%cracks), size(m%fracture%cracks) > 0, results)
       call read_probes(deck, m, results%probes)
       call problems(deck, error)
       call agree_on_error(m%comm, error)
@@ -74,9 +74,10 @@ contains
    end subroutine open_results
 
    !> Intervals and fields.
-   subroutine read_output(deck, n_cracks, results)
+   subroutine read_output(deck, n_cracks, has_fronts, results)
       type(deck_t), intent(in) :: deck
       integer, intent(in) :: n_cracks
+      logical, intent(in) :: has_fronts      !! values at fronts are wanted
       type(results_t), intent(inout) :: results
       type(string_t), allocatable :: words(:)
       type(block_t) :: block
@@ -94,6 +95,8 @@ contains
       words = texts_of(block, 'crack')
       results%has_cracks = n_cracks > 0 .and. .not. is_none(words)
       call crack_fields(words, unit_text(deck, 'length'), results%crack_fields, results%crack_units)
+      if (has_fronts) call add_front_fields(unit_text(deck, 'release rate'), &
+         unit_text(deck, 'toughness'), results%crack_fields, results%crack_units)
    end subroutine read_output
 
    pure function is_none(words) result(none)

@@ -15,7 +15,7 @@ module xmpm_run
    use xmpm_settle, only: settle, choose_step
    use xmpm_grow_cracks, only: judge_fronts
    use xmpm_relax, only: relax
-   use xmpm_fracture, only: fracture_t
+   use xmpm_fracture, only: fracture_t, release_range
    use xmpm_model, only: model_t
    implicit none
    private
@@ -101,7 +101,12 @@ contains
       type(agenda_t), intent(in) :: agenda
       type(run_state_t) :: state
 
-      state = run_state_t(m%step, m%time, m%dt_before, agenda%balance%relative_error, m%imbalance)
+      state%step = m%step
+      state%time = m%time
+      state%dt = m%dt_before
+      state%energy_error = agenda%balance%relative_error
+      state%imbalance = m%imbalance
+      if (m%fracture%measured) state%release = release_range(m%fracture)
    end function state_of
 
    !> Write the files and rows that are due. Collective.

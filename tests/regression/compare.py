@@ -24,9 +24,10 @@ SINGLE = 2.5e-7  # two roundings to single precision, over the largest value
 def read_table(path: Path) -> dict[str, np.ndarray]:
     """Columns of a CSV file; 17 digits give back every bit."""
     lines = [line for line in path.read_text().splitlines() if line and line[0] != "#"]
-    rows = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
-    names = lines[0].split(",")
-    return {name: rows[:, i] for i, name in enumerate(names)}
+    rows = [line.split(",") for line in lines[1:]]
+    columns = dict(zip(lines[0].split(","), zip(*rows, strict=True), strict=True))
+    columns.pop("crack", None)  # a name, not a number
+    return {name: np.array(cells, dtype=float) for name, cells in columns.items()}
 
 
 def step_files(run: str, kind: str = "particles") -> list[Path]:
@@ -49,12 +50,17 @@ def field_of(column: str) -> str:
     """Name of the field that a column belongs to: energies are one, components of a vector too."""
     if column in ENERGIES:
         return "energy"
+    if re.match(r"[JK]_", column):
+        return column[0]
     return re.sub(r"_([xyz]|xx|yy|zz|xy|yz|xz)$", "", column)
 
 
 def table_differences(first: dict, second: dict) -> dict[str, float]:
     """Largest difference of each field over its largest magnitude."""
     assert list(first) == list(second), "the tables have other columns"
+    for table in (first, second):
+        if "kink_angle" in table:  # means nothing where there is no K
+            table["kink_angle"] = table["kink_angle"] * table["K_star"]
     fields: dict[str, list[str]] = {}
     for name in first:
         fields.setdefault(field_of(name), []).append(name)
@@ -156,12 +162,12 @@ def agree(first: str, second: str, tolerance: float, single: float, source: str)
 def names_of(run: str) -> dict:
     """What values in a table of checks can be made of.
 
-    `energy` and `probe` are dictionaries of columns; `start` and `last` those of the particles'
+    `energy`, `probe` and `front` are dictionaries of columns; `start` and `last` those of the particles'
     first and last step, `crack` that of the last crack surface; `np`, and some functions of Python.
     """
     path = Path(run)
     names = {"np": np, "abs": abs, "max": max, "min": min, "len": len, "set": set}
-    for kind in ("energy", "probe"):
+    for kind in ("energy", "probe", "front"):
         table = path.parent / f"{path.name}_{kind}.csv"
         if table.exists():
             names[kind] = read_table(table)
