@@ -162,8 +162,9 @@ def agree(first: str, second: str, tolerance: float, single: float, source: str)
 def names_of(run: str) -> dict:
     """What values in a table of checks can be made of.
 
-    `energy`, `probe` and `front` are dictionaries of columns; `start` and `last` those of the particles'
-    first and last step, `crack` that of the last crack surface; `np`, and some functions of Python.
+    `energy`, `probe` and `front` are dictionaries of columns; `start` and `last` those of the
+    particles' first and last step, `crack` that of the last crack surface; `np`, and some functions
+    of Python.
     """
     path = Path(run)
     names = {"np": np, "abs": abs, "max": max, "min": min, "len": len, "set": set}
