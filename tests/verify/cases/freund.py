@@ -60,8 +60,8 @@ def follow(
 ) -> tuple[Run, Front, np.ndarray]:
     """Run a slab with so many cells to H; its front in the window of time, and the exact K_I.
 
-    `confined` has the lateral stresses of a plane wave in the initial state, which do not act on the
-    crack; `part` is the PIC part of a step and `tip` the place of the tip in cells.
+    `confined` has the lateral stresses of a plane wave in the initial state, which do not act on
+    the crack; `part` is the PIC part of a step and `tip` the place of the tip in cells.
     """
     h, side = HEIGHT / cells, SIDE * confined
     load = f"*LOAD     face = slab:+y, traction = 0 {PULL!r} 0"

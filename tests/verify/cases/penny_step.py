@@ -3,7 +3,8 @@
 A quarter of a block under tension from the start, its outer nodes held, in which the crack
 appears. The block is so wide that no wave comes back from its sides before the end, 2.5 a/c_s. The
 reference is a computed solution (data/step_penny.csv); it overshoots the static value by 1.313 at
-2.06 a/c_s. Wanted is 2 % for that peak and its time, at the finest size.
+2.06 a/c_s. Wanted is 2 % for that peak and its time, at the finest size: for the highest value,
+and for the reference stretched to fit the values about the peak.
 """
 
 from collections.abc import Iterator
@@ -55,6 +56,23 @@ def peak(t: np.ndarray, k: np.ndarray) -> tuple[float, float]:
     return float(np.polyval([a, b, c], at)), float(t[i] + at)
 
 
+def fit(t: np.ndarray, k: np.ndarray, table: dict[str, np.ndarray]) -> tuple[float, float]:
+    """Height and time of the peak as those of the reference, stretched to fit the values about it.
+
+    The curve is flat before its peak, so that noise alone decides which value is the highest.
+    """
+    height, when = peak(table["time"], table["ratio"])
+    near = (t > 0.75 * when) & (t < 1.15 * when)
+
+    def misfit(stretch: float) -> tuple[float, float]:
+        curve = np.interp(t[near] / stretch, table["time"], table["ratio"])
+        factor = float(curve @ k[near] / (curve @ curve))
+        return rms(k[near] - factor * curve), factor
+
+    stretch = min(np.linspace(0.85, 1.15, 601), key=lambda s: misfit(s)[0])
+    return misfit(stretch)[1] * height, float(stretch) * when
+
+
 def rows(full: bool) -> Iterator[Row]:
     """Overshoot, its time, and the rms over all times, of the mean over the front."""
     table = read_table(ROOT / "tests" / "verify" / "data" / "step_penny.csv")
@@ -82,6 +100,9 @@ def rows(full: bool) -> Iterator[Row]:
             case = ("penny-step", method, h, run)
             yield Row.of(*case, "overshoot of K_I", value, height, limit)
             yield Row.of(*case, "time of it [a/c_s]", at, when, limit)
+            value, at = fit(t, k, table)
+            yield Row.of(*case, "overshoot, fitted", value, height, limit)
+            yield Row.of(*case, "time of it, fitted", at, when, limit)
             exact = np.interp(t, table["time"], table["ratio"])
             error = rms(k - exact) / rms(exact)
             yield Row.of(*case, "rms of K_I", error, 0.0, None, error)
