@@ -15,7 +15,9 @@ from xmpm_prep.crack_surface import Surface, corner_angles, drop_unused, find_ed
 
 SHARP = 40.0  # neighbours that meet at more than this keep their edge; corners likewise [degrees]
 LONGEST, SHORTEST = 4.0 / 3.0, 0.8  # edges outside are split or collapsed [wanted size]
-PASSES = 12  # of all steps
+PASSES = 12  # of all steps, at most
+SETTLED = 0.01  # of the triangles come or go: enough passes
+LEAST = 0.05  # smallest angle that a collapse may make [radians]
 FIXED, LINE, FREE = 2, 1, 0  # how a vertex may move: not at all, along its line, in the surface
 
 
@@ -26,16 +28,21 @@ def remesh(surface: Surface, size: float) -> Surface:
     points, triangles = surface.points.copy(), surface.triangles.copy()
     kind = vertex_kinds(surface, lines)
     for number in range(PASSES):
+        count = len(triangles)
         points, triangles, lines, kind = split_long(points, triangles, lines, kind, LONGEST * size)
+        changed = len(triangles) - count
         points, triangles, lines, kind = collapse_short(
             points, triangles, lines, kind, SHORTEST * size, LONGEST * size
         )
-        for _ in range(4):
-            triangles, changed = flip(points, triangles, lines)
-            if not changed:
-                break
-        for _ in range(3 if number < PASSES - 1 else 8):
+        changed += abs(len(triangles) - count - changed)
+        triangles = flip_all(points, triangles, lines)
+        for _ in range(3):
             points = relax(points, triangles, lines, kind, original)
+        if number > 2 and changed < SETTLED * len(triangles):
+            break
+    for _ in range(5):
+        triangles = flip_all(points, triangles, lines)
+        points = relax(points, triangles, lines, kind, original)
     triangles, _ = flip(points, triangles, lines)
     return drop_unused(Surface(points, triangles))
 
@@ -230,33 +237,23 @@ def find_rows(table: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 def collapse_short(points, triangles, lines, kind, shortest, longest):
-    """Make one vertex of the ends of short edges, the shortest first."""
-    for _ in range(40):
+    """Make one vertex of the ends of short edges, of those near each other the shortest first."""
+    points = points.copy()
+    for _ in range(60):
         edges = find_edges(triangles)
         length = np.linalg.norm(points[edges.ends[:, 1]] - points[edges.ends[:, 0]], axis=1)
         is_line = np.zeros(len(edges.ends), dtype=bool)
         is_line[find_rows(edges.ends, lines)] = True
-        candidates = np.flatnonzero(length < shortest)
-        candidates = candidates[np.argsort(length[candidates], kind="stable")]
-        star = Stars(triangles, len(points))
-        touched = np.zeros(len(points), dtype=bool)
-        target = np.arange(len(points))
-        for edge in candidates:
-            move = choose_collapse(edges.ends[edge], is_line[edge], points, kind)
-            if move is None:
-                continue
-            gone, kept, place = move
-            around = np.union1d(star.neighbours(gone), star.neighbours(kept))
-            if touched[around].any() or not may_collapse(
-                gone, kept, place, points, triangles, star, edges.count[edge], longest
-            ):
-                continue
-            touched[around] = True
-            target[gone] = kept
-            points = points if np.array_equal(points[kept], place) else points.copy()
-            points[kept] = place
-        if (target == np.arange(len(points))).all():
+        short = np.flatnonzero(length < shortest)
+        short, gone, kept, place = choose_collapses(edges.ends, short, is_line, points, kind)
+        good = may_collapse(gone, kept, place, points, triangles, edges, short, longest)
+        short, gone, kept, place = short[good], gone[good], kept[good], place[good]
+        chosen = apart(edges.ends, short, length, len(points))
+        if not chosen.any():
             break
+        target = np.arange(len(points))
+        target[gone[chosen]] = kept[chosen]
+        points[kept[chosen]] = place[chosen]
         triangles = target[triangles]
         a, b, c = triangles.T
         triangles = triangles[(a != b) & (b != c) & (c != a)]
@@ -265,56 +262,89 @@ def collapse_short(points, triangles, lines, kind, shortest, longest):
     return points, triangles, lines, kind
 
 
-class Stars:
-    """The triangles around each vertex."""
+def choose_collapses(ends, short, is_line, points, kind):
+    """Which end of short edges vanishes into which, and where that goes.
 
-    def __init__(self, triangles: np.ndarray, n: int):
-        self.triangles = triangles
-        self.order = np.argsort(triangles.ravel(), kind="stable") // 3
-        self.first = np.searchsorted(np.sort(triangles.ravel()), np.arange(n + 1))
-
-    def of(self, vertex: int) -> np.ndarray:
-        """Triangles with a vertex."""
-        return self.order[self.first[vertex] : self.first[vertex + 1]]
-
-    def neighbours(self, vertex: int) -> np.ndarray:
-        """A vertex and all that an edge joins to it."""
-        return np.unique(self.triangles[self.of(vertex)])
-
-
-def choose_collapse(ends, is_line, points, kind):
-    """Which end of an edge vanishes into which, and where that goes; None where neither may."""
-    one, two = ends
-    if kind[one] > kind[two]:
-        one, two = two, one  # the one that moves more freely vanishes
-    if kind[one] == FIXED or (kind[one] == LINE and not is_line):
-        return None
-    if kind[two] == kind[one] == FREE:
-        return one, two, 0.5 * (points[one] + points[two])
-    return one, two, points[two]
+    The end that moves more freely vanishes; edges that may not are left out.
+    """
+    swap = kind[ends[short, 0]] > kind[ends[short, 1]]
+    gone = np.where(swap, ends[short, 1], ends[short, 0])
+    kept = np.where(swap, ends[short, 0], ends[short, 1])
+    may = (kind[gone] == FREE) | ((kind[gone] == LINE) & is_line[short])
+    short, gone, kept = short[may], gone[may], kept[may]
+    place = points[kept].copy()
+    free = (kind[gone] == FREE) & (kind[kept] == FREE)
+    place[free] = 0.5 * (points[gone[free]] + points[kept[free]])
+    return short, gone, kept, place
 
 
-def may_collapse(gone, kept, place, points, triangles, star, count, longest):
+def around(table_first, table, vertices):
+    """Rows of a table that belong to vertices: which vertex of the list, and the row."""
+    count = table_first[vertices + 1] - table_first[vertices]
+    number = np.repeat(np.arange(len(vertices)), count)
+    step = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
+    return number, table[table_first[vertices][number] + step]
+
+
+def may_collapse(gone, kept, place, points, triangles, edges, short, longest):
     """Whether the surface stays a surface, turns nowhere and gets no edge that is too long."""
-    common = np.intersect1d(star.neighbours(gone), star.neighbours(kept))
-    if len(common) != count + 2:  # the ends and one vertex a triangle: else parts would be pinched
-        return False
-    around = np.union1d(star.of(gone), star.of(kept))
-    corners = triangles[around]
-    has_both = (corners == gone).any(axis=1) & (corners == kept).any(axis=1)
-    corners = corners[~has_both]
-    if len(corners) == 0:
-        return False
+    n, m = len(points), len(short)
+    if m == 0:
+        return np.zeros(0, dtype=bool)
+    # Neighbours that both ends have: one a triangle, else parts would be pinched together.
+    both = np.concatenate([edges.ends, edges.ends[:, ::-1]])
+    both = both[np.argsort(both[:, 0], kind="stable")]
+    first = np.searchsorted(both[:, 0], np.arange(n + 1))
+    rows = [around(first, both[:, 1], vertices) for vertices in (gone, kept)]
+    keys = np.concatenate([number * n + vertex for number, vertex in rows])
+    key, count = np.unique(keys, return_counts=True)
+    common = np.bincount(key[count == 2] // n, minlength=m)
+    good = common == edges.count[short]
+    # Triangles around the ends but for those that vanish.
+    flat = triangles.ravel()
+    order = np.argsort(flat, kind="stable")
+    first = np.searchsorted(flat[order], np.arange(n + 1))
+    rows = [around(first, order // 3, vertices) for vertices in (gone, kept)]
+    number = np.concatenate([row[0] for row in rows])
+    corners = triangles[np.concatenate([row[1] for row in rows])]
+    is_end = (corners == gone[number, None]) | (corners == kept[number, None])
+    stays = is_end.sum(axis=1) == 1
+    number, corners, is_end = number[stays], corners[stays], is_end[stays]
     before = points[corners]
-    after = before.copy()
-    after[(corners == gone) | (corners == kept)] = place
+    after = np.where(is_end[:, :, None], place[number][:, None], before)
     old = np.cross(before[:, 1] - before[:, 0], before[:, 2] - before[:, 0])
     new = np.cross(after[:, 1] - after[:, 0], after[:, 2] - after[:, 0])
     size = np.linalg.norm(old, axis=1) * np.linalg.norm(new, axis=1)
-    if (np.einsum("ij,ij->i", old, new) <= 0.5 * size).any():
-        return False
-    sides = np.linalg.norm(after - np.roll(after, 1, axis=1), axis=2)
-    return bool((sides <= longest).all()) and bool(corner_angles(after).min() > 0.05)
+    bad = np.einsum("ij,ij->i", old, new) <= 0.5 * size
+    bad |= (np.linalg.norm(after - np.roll(after, 1, axis=1), axis=2) > longest).any(axis=1)
+    bad |= corner_angles(after).min(axis=1) < LEAST
+    return (
+        good & (np.bincount(number[bad], minlength=m) == 0) & (np.bincount(number, minlength=m) > 0)
+    )
+
+
+def apart(ends, short, length, n):
+    """Of short edges those that are the shortest up to two edges around."""
+    rank = np.empty(len(short))
+    rank[np.argsort(length[short], kind="stable")] = np.arange(len(short))
+    least = np.full(n, np.inf)
+    for end in range(2):
+        np.minimum.at(least, ends[short, end], rank)
+    for _ in range(2):
+        spread = least.copy()
+        np.minimum.at(spread, ends[:, 0], least[ends[:, 1]])
+        np.minimum.at(spread, ends[:, 1], least[ends[:, 0]])
+        least = spread
+    return (rank == least[ends[short, 0]]) & (rank == least[ends[short, 1]])
+
+
+def flip_all(points, triangles, lines):
+    """Turn edges until hardly any can be."""
+    for _ in range(4):
+        triangles, changed = flip(points, triangles, lines)
+        if not changed:
+            break
+    return triangles
 
 
 def flip(points, triangles, lines):
