@@ -9,7 +9,8 @@ module xmpm_front
    private
 
    public :: front_t, front_place_t
-   public :: front_test_points, mark_front, refresh_front, nearest_on_front, frame_on_front, &
+   public :: front_test_points, mark_front, refresh_front, shift_front, nearest_on_front, &
+      frame_on_front, &
       vertex_phi
    public :: fully_cracked, beyond_reach
 
@@ -105,6 +106,17 @@ contains
       call set_positions(surface, front)
       call refit_tree(front%tree, edge_boxes(surface%rounding, front))
    end subroutine refresh_front
+
+   !> Put the nodes ahead of the surface, to where the crack has come; frames stay as they are.
+   subroutine shift_front(rounding, offset, front)
+      real(wp), intent(in) :: rounding          !! of the surface [length]
+      real(wp), intent(in) :: offset(:)         !! (nn) way ahead along e1 [length]
+      type(front_t), intent(inout) :: front     !! positions and lengths are changed
+
+      front%x = front%x + spread(offset, 1, 3)*front%e1
+      call set_lengths(front)
+      call refit_tree(front%tree, edge_boxes(rounding, front))
+   end subroutine shift_front
 
    !> The nearest point of the fronts within reach.
    pure subroutine nearest_on_front(front, x, reach, place)
@@ -294,8 +306,7 @@ contains
    subroutine set_positions(surface, front)
       type(surface_t), intent(in) :: surface
       type(front_t), intent(inout) :: front
-      integer :: c, i, k
-      real(wp) :: s
+      integer :: i, k
 
       front%x = surface%x(:, front%vertex)
       do k = 1, front%edge_count
@@ -306,6 +317,15 @@ contains
          front%e1(:, i) = unit_vector(cross(front%e2(:, i), tangent_at(front, i)))
          front%e3(:, i) = cross(front%e1(:, i), front%e2(:, i))
       end do
+      call set_lengths(front)
+   end subroutine set_positions
+
+   !> Lengths along the chains.
+   subroutine set_lengths(front)
+      type(front_t), intent(inout) :: front
+      integer :: c, i, k
+      real(wp) :: s
+
       do c = 1, front%chain_count
          s = 0.0_wp
          do i = front%chain_offset(c), front%chain_offset(c + 1) - 1
@@ -315,7 +335,7 @@ contains
          end do
          front%length(c) = s
       end do
-   end subroutine set_positions
+   end subroutine set_lengths
 
    pure function edge_vector(front, k) result(t)
       type(front_t), intent(in) :: front

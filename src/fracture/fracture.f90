@@ -13,7 +13,7 @@ module xmpm_fracture
    use xmpm_elastic, only: elastic_t
    use xmpm_vectors, only: unit_vector
    use xmpm_surface_index, only: nearest_t, nearest_on_surface
-   use xmpm_front, only: front_t, front_place_t, nearest_on_front
+   use xmpm_front, only: front_t, front_place_t, nearest_on_front, shift_front
    use xmpm_crack, only: crack_t, gather_crack
    use xmpm_near_tip, only: strain_of
    use xmpm_samples, only: sample_t, collect_samples
@@ -96,6 +96,8 @@ contains
       associate (number => fracture%cracks(which), shape => fracture%shape)
          crack = cracks(number)
          call gather_crack(crack, comm, grid, .true.)
+         if (allocated(crack%offset)) call shift_front(crack%surface%rounding, crack%offset, &
+            crack%front)
          call list_points(crack, values%points)
          call clear_values(values, values%points%n)
          values%speed = speed

@@ -39,7 +39,8 @@ module xmpm_growth
       real(wp), allocatable :: toughness_of(:)        !! (bodies) K_IC, 0 where not known
       type(region_t), allocatable :: regions(:)       !! boxes with their own; the last one wins
       real(wp) :: evaluated = -huge(1.0_wp)           !! when K was found last [time]
-      real(wp), allocatable :: k(:, :)                !! (3,nn) filtered modes I II III
+      real(wp), allocatable :: k(:, :)                !! (3,nn) modes I II III, averaged once
+      real(wp), allocatable :: k_twice(:, :)          !! (3,nn) and that averaged again
       real(wp), allocatable :: rate(:)                !! (nn) energy release rate, as found last
       real(wp), allocatable :: kink(:)                !! (nn) of the criterion [rad]
       real(wp), allocatable :: intensity(:)           !! (nn) K* of the criterion
@@ -66,7 +67,8 @@ contains
 
       n = crack%front%node_count
       crack%offset = spread(0.0_wp, 1, n)
-      allocate (growth%k(3, n), growth%rate(n), growth%kink(n), growth%intensity(n), &
+      allocate (growth%k(3, n), growth%k_twice(3, n), growth%rate(n), growth%kink(n), &
+         growth%intensity(n), &
          growth%toughness(n), growth%rayleigh(n), growth%dilatational(n), growth%speed(n), &
          source=0.0_wp)
       allocate (growth%outside(n), growth%waits(n), source=.false.)
@@ -92,8 +94,11 @@ contains
       end do
    end function toughness_at
 
-   !> Take the intensities that were found at the nodes: averaged over the filter's time (first
-   !> order), then given to the criterion.
+   !> Take the intensities that were found at the nodes, averaged over the filter's time, and give
+   !> them to the criterion.
+   !>
+   !> Twice the first-order average less the average of it: K that rises steadily does not lag. A
+   !> node at rest takes K as it is, so that growth begins when K* reaches the toughness.
    subroutine take_intensities(growth, k, rate, time)
       type(growth_t), intent(inout) :: growth
       real(wp), intent(in) :: k(:, :)   !! (3,nn) modes I II III
@@ -106,11 +111,19 @@ contains
       if (growth%filter > 0.0_wp .and. growth%evaluated > -huge(1.0_wp)) then
          part = 1.0_wp - exp(-(time - growth%evaluated)/growth%filter)
       end if
-      growth%k = growth%k + part*(k - growth%k)
       growth%rate = rate
       growth%evaluated = time
       do i = 1, size(growth%kink)
-         call growth%criterion%judge(growth%k(:, i), growth%kink(i), twist, growth%intensity(i))
+         if (growth%speed(i) > 0.0_wp) then
+            growth%k(:, i) = growth%k(:, i) + part*(k(:, i) - growth%k(:, i))
+            growth%k_twice(:, i) = growth%k_twice(:, i) &
+               + part*(growth%k(:, i) - growth%k_twice(:, i))
+         else
+            growth%k(:, i) = k(:, i)
+            growth%k_twice(:, i) = k(:, i)
+         end if
+         call growth%criterion%judge(2*growth%k(:, i) - growth%k_twice(:, i), growth%kink(i), &
+            twist, growth%intensity(i))
       end do
    end subroutine take_intensities
 
@@ -234,9 +247,11 @@ contains
 
       before = growth
       n = grown%front%node_count
-      deallocate (growth%k, growth%rate, growth%kink, growth%intensity, growth%toughness, &
+      deallocate (growth%k, growth%k_twice, growth%rate, growth%kink, growth%intensity, &
+         growth%toughness, &
          growth%rayleigh, growth%dilatational, growth%speed, growth%outside, growth%waits)
-      allocate (growth%k(3, n), growth%rate(n), growth%kink(n), growth%intensity(n), &
+      allocate (growth%k(3, n), growth%k_twice(3, n), growth%rate(n), growth%kink(n), &
+         growth%intensity(n), &
          growth%toughness(n), growth%rayleigh(n), growth%dilatational(n), growth%speed(n), &
          offset(n), source=0.0_wp)
       allocate (growth%outside(n), growth%waits(n), source=.false.)
@@ -248,6 +263,7 @@ contains
          f = grown%share(v)
          stayed = v <= grown%old_vertices
          growth%k(:, i) = (1 - f)*before%k(:, a) + f*before%k(:, b)
+         growth%k_twice(:, i) = (1 - f)*before%k_twice(:, a) + f*before%k_twice(:, b)
          growth%rate(i) = (1 - f)*before%rate(a) + f*before%rate(b)
          growth%intensity(i) = (1 - f)*before%intensity(a) + f*before%intensity(b)
          growth%speed(i) = (1 - f)*before%speed(a) + f*before%speed(b)
