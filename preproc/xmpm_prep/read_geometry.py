@@ -15,6 +15,7 @@ SEGMENTS = 20  # curved ones of a full circle
 MOST_SPLIT = 40  # of a curved segment into straight ones
 SAGITTA = 0.01  # most distance of triangles from the surface, in cells
 SURFACE_OPTIONS = {  # of gmsh: sizes by curvature alone
+    "Algorithm": 1,  # MeshAdapt: the others choose other triangles where rounding differs
     "MeshSizeFromCurvature": SEGMENTS,
     "MeshSizeFromPoints": 0,
     "MeshSizeExtendFromBoundary": 0,
