@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 import h5py
 import numpy as np
 
+from xmpm_prep.parts import pack, unpack
+
 BODY_COLOURS = ("#8fa3b8", "#b8a88f", "#93b58f", "#ab93b8", "#b89393", "#8fb5b8")
 SET_COLOURS = ("#e69f00", "#56b4e9", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7")
 CRACK_COLOUR, EDGE_COLOUR, FRONT_COLOUR, GRID_COLOUR = "#7b2d8b", "#3c1644", "#e10000", "#9a9a9a"
@@ -58,21 +60,32 @@ def add_particles(scene, cloud):
     for number, name in enumerate(cloud.body_names):
         rows = np.flatnonzero(cloud.bodies == number)
         cells = np.floor((cloud.positions[rows] - origin) / spacing).astype(np.int64)
+        filled, cell_of_row = np.unique(pack(cells), return_inverse=True)
+        cells = unpack(filled)
+        cell_of = np.full(len(cloud.volumes), -1)
+        cell_of[rows] = cell_of_row.ravel()
         owner, side = _exposed(cells)
         taken = np.zeros(len(owner), bool)
         for set_name in cloud.sets:
-            place = np.full(len(cloud.volumes), -1)
-            place[cloud.sets[set_name]] = np.arange(len(cloud.sets[set_name]))
-            entry = place[rows[owner]]
-            chosen = (entry >= 0) & ~taken
-            if set_name in cloud.loaded and chosen.any():
-                area = _areas(cloud, set_name)[entry]
-                along = np.einsum("ij,ij->i", area, SIDES[side])
-                chosen &= along > 0.3 * np.linalg.norm(area, axis=1)
+            chosen = _in_set(cloud, set_name, cell_of, len(cells), owner, side) & ~taken
             taken |= chosen
             _add_faces(scene, f"set {set_name}", "set", cells, owner, side, chosen, spacing, origin)
         _add_faces(scene, f"body {name}", "body", cells, owner, side, ~taken, spacing, origin)
     scene.unit = cloud.unit
+
+
+def _in_set(cloud, name, cell_of, count, owner, side):
+    """Which faces belong to a set: of cells with its particles, and along their areas."""
+    members = cell_of[cloud.sets[name]]
+    here = members >= 0
+    found = np.zeros(count, bool)
+    found[members[here]] = True
+    if name not in cloud.loaded:
+        return found[owner]
+    area = np.zeros((count, 3))
+    np.add.at(area, members[here], _areas(cloud, name)[here])
+    along = np.einsum("ij,ij->i", area[owner], SIDES[side])
+    return found[owner] & (along > 0.3 * np.linalg.norm(area[owner], axis=1))
 
 
 def _areas(cloud, name):
@@ -97,7 +110,8 @@ def _exposed(cells):
     extent = np.ptp(cells, axis=0) + 3
     strides = np.array([1, extent[0], extent[0] * extent[1]])
     key = (cells - low) @ strides
-    filled, first = np.unique(key, return_index=True)
+    first = np.argsort(key)
+    filled = key[first]
     owners, sides = [], []
     for number, step in enumerate(SIDES):
         beyond = filled + step @ strides

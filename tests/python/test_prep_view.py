@@ -57,6 +57,14 @@ def test_faces_of_bodies_and_sets_make_up_the_surface(prepared):
     assert np.allclose([*low, *high], [0, 0, 0, 12, 8, 4])
 
 
+def test_set_is_whole_where_a_cell_holds_many_particles(prepared, tmp_path):
+    model, path = prepared[0].with_suffix(".geo"), tmp_path / "mesh.h5"
+    assert main(["particles", str(model), "--h", "2", "--way", "conforming", "-o", str(path)]) == 0
+    scene = Scene()
+    add_particles(scene, read_particles(path))
+    assert area(scene.of_kind("set")) == pytest.approx(8 * 4)  # cells of 2 fill the block
+
+
 def test_crack_has_its_front_and_the_grid_its_cells(prepared):
     scene = Scene()
     add_crack(scene, prepared[1])
