@@ -11,6 +11,7 @@ from scipy.special import ellipe
 from xmpm_prep.crack_file import write_crack
 from xmpm_prep.crack_front import BOUNDARY
 from xmpm_prep.crack_read import read_crack
+from xmpm_prep.model import read_model
 
 INPUT = Path(__file__).resolve().parents[2] / "input"
 
@@ -104,3 +105,32 @@ def test_files_of_cracks_keep_their_fronts(tmp_path):
         edges, numbers = file["front_edges"][:], file["front_numbers"][:]
     for number, front in enumerate(crack.fronts):
         np.testing.assert_array_equal(edges[numbers == number], front.edges)
+
+
+BODIES = {
+    "plate": 400 * 120 * 10,
+    "cylinder": np.pi * 50**2 * 90,
+    "bar": 300 * 60 * 90,
+    "beam": 400 * 100 * 10,
+    "rod": 50 * 50 * 100,
+    "tube": np.pi * (45**2 - 35**2) * 100,
+}
+
+
+@pytest.mark.parametrize("name", LENGTHS)
+def test_geometry_and_deck_have_the_same_bodies(name):
+    model = read_model(INPUT / "geometry" / f"{name}.geo", prepare.EXAMPLES[name].h)
+    deck = (INPUT / f"{name}.inp").read_text()
+    assert [body.name for body in model.bodies] == re.findall(r"(?m)^\*BODY (\S+)", deck)
+    half = 5 if name == "bending-5mm" else 2
+    for body in model.bodies:
+        volume = BODIES.get(body.name, 2 * half * 50 * 10)
+        assert body.volume == pytest.approx(volume, rel=1e-9)  # gmsh's own, exact for these
+    if name.startswith("bending"):
+        punch = model.points[model.bodies[1].triangles].reshape(-1, 3)
+        middle = -20 if name == "bending-eccentric" else 0
+        np.testing.assert_allclose(
+            [punch.min(axis=0), punch.max(axis=0)],
+            [[middle - half, 100, 0], [middle + half, 150, 10]],
+            atol=1e-6,  # gmsh's tolerance of geometry
+        )
