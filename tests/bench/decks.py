@@ -16,7 +16,7 @@ BLOCK = """
   law = elastic, density = density, young = young, poisson = 0.3
 *BODY block
   material = steel, particles = 2
-  box = 0.3 0.3 0.3 40.3 40.3 @height@
+  box = 0.5 0.5 0.5 40.5 40.5 @height@
   velocity = 0.010*c 0.008*c 0.006*c
   spin = 0 0.0005*c 0.001*c, spin_centre = 20 20 20
 *TIME     end = 1, scheme = musl, cfl = 0.5, steps = @steps@
@@ -60,7 +60,7 @@ PLACES = {
 
 def block(shape: str, steps: int, height: int = 40) -> str:
     """Flying block; half the height is half the particles."""
-    return fill(BLOCK, shape=shape, steps=steps, height=height + 0.3)
+    return fill(BLOCK, shape=shape, steps=steps, height=height + 0.5)
 
 
 def plate(cracks: int, steps: int | None = None) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import functools
 import os
 import re
 import shutil
@@ -17,9 +18,10 @@ from pathlib import Path
 from bench import decks
 from verify.measure import ROOT, Run, run_command, run_deck
 
-# The least that a step must move between memory and processor: P2G reads a particle's record of 16
-# reals, the update reads it and writes most of it back [B].
-TRAFFIC = 350
+# What a MUSL step must move between memory and processor for a particle, in reals of 8 bytes: P2G
+# reads x v m vol s (14), the velocity update reads x v m and writes v (10), the stress update reads
+# x m vol s and writes x vol s (21) [B].
+TRAFFIC = 8 * (14 + 10 + 21)
 WARM, LONG = 60, 260  # steps of a short and a long run; their difference leaves set-up out
 PRESETS = ("native", "release")
 
@@ -68,7 +70,7 @@ def speed_case(shape: str) -> Iterator[Row]:
                 long.append(run(decks.block(shape, LONG), preset, ranks))
             cpu = min(r.cpu_s for r in long) - min(r.cpu_s for r in short)
             walls[ranks] = min(r.wall_s for r in long) - min(r.wall_s for r in short)
-            memory = bytes_per_particle(shape, preset, long[0], count) if ranks == 1 else None
+            memory = bytes_per_particle(shape, preset, short[0], count) if ranks == 1 else None
             rate = count * (LONG - WARM) / cpu / 1e6
             yield Row(name + suffix(preset), count, LONG - WARM, ranks, cpu, rate, memory, None)
         print(f"   {name}{suffix(preset)}: two ranks are {walls[1] / walls[2]:.2f} times one")
@@ -104,6 +106,7 @@ def crack_case(cracks: int, pairs: int) -> Iterator[Row]:
         print(f"   {name}: no valgrind here, instructions are not counted")
 
 
+@functools.cache
 def size_of_plate(preset: str) -> tuple[int, int]:
     """Particles and steps of the plate, as the program says them."""
     result = run_deck(decks.plate(0), program=program(preset))
@@ -113,6 +116,7 @@ def size_of_plate(preset: str) -> tuple[int, int]:
     return int(found[1].replace(",", "")) if found else 480_000, steps
 
 
+@functools.cache
 def instructions(cracks: int) -> float:
     """Instructions of 20 steps of the plate, by callgrind, without those of set-up.
 
