@@ -1,6 +1,9 @@
 """gmsh for the length of a `with` block, quiet, its complaints as PrepError."""
 
+import os
+import sys
 from contextlib import contextmanager
+from pathlib import Path
 
 from xmpm_prep.errors import FILES, PrepError
 
@@ -26,10 +29,39 @@ def gmsh_session():
 
 def open_in_gmsh(gmsh, path):
     """Open any file that gmsh knows: .geo, .step, .brep, .iges, .msh."""
+    if str(path).endswith(".geo"):
+        _check_last_line(path)
     try:
-        gmsh.open(str(path))
+        with _quiet():
+            gmsh.open(str(path))
     except Exception as failure:
         raise PrepError(f"{path}: gmsh cannot read it: {_reason(gmsh, failure)}", FILES) from None
+
+
+def _check_last_line(path):
+    """Refuse what gmsh reads in part: of a last line that does not end, the first statement."""
+    with Path(path).open(encoding="utf-8", errors="replace") as file:
+        last = file.read().rpartition("\n")[2]
+    if last.strip().rstrip(";").count(";"):
+        raise PrepError(
+            f"{path}: the last line holds several statements and no end of line; gmsh would read "
+            "the first alone: add an empty line",
+            FILES,
+        )
+
+
+@contextmanager
+def _quiet():
+    """Nothing on standard output from libraries: OpenCASCADE writes there what we say anyway."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    with Path(os.devnull).open("w") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+        try:
+            yield
+        finally:
+            os.dup2(kept, 1)
+            os.close(kept)
 
 
 def _reason(gmsh, failure):

@@ -480,6 +480,7 @@ THIN = PLATE.replace("12, 8, 4}", "12, 8, 0.5}").replace('"plate:alloy"', '"shee
 BROKEN = {
     "missing": (lambda _: "missing.geo", [], 4, "no such file"),
     "unreadable": (text_file("a.geo", "Box(1) = {0,0"), [], 4, "gmsh cannot read it"),
+    "half a line": (text_file("a.geo", "x = 1; y = 2;"), [], 4, "add an empty line"),
     "no STEP": (text_file("a.step", "not a STEP file"), [], 4, "gmsh cannot read it"),
     "no mesh": (text_file("a.vtu", "<nothing"), [], 4, "meshio cannot read it"),
     "unknown ending": (text_file("a.xyz1", "?"), [], 4, "meshio cannot read it"),
@@ -505,16 +506,17 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_broken_input_gets_one_line_and_leaves_nothing(tmp_path, capsys, name):
+def test_broken_input_gets_one_line_and_leaves_nothing(tmp_path, capfd, name):
     writer, options, code, message = BROKEN[name]
     model = writer(tmp_path)
     before = sorted(tmp_path.iterdir())
     default = [] if "--h" in options else ["--h", "1" if "STL" not in name else "0.25"]
     output = tmp_path / "body.h5"
     assert main(["particles", str(tmp_path / model), "-o", str(output), *default, *options]) == code
-    said = capsys.readouterr()
+    said = capfd.readouterr()
     lines = said.err.splitlines()
     assert len(lines) == 1, lines
+    assert said.out == ""
     assert lines[0].startswith("xmpm-prep: ")
     assert re.search(message, lines[0]), lines[0]
     assert sorted(tmp_path.iterdir()) == before
