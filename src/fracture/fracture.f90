@@ -48,7 +48,7 @@ contains
       type(bodies_t), intent(in) :: bodies
       type(particles_t), intent(inout) :: p
       type(front_place_t) :: place
-      real(wp) :: centre(3)
+      real(wp) :: centre(3), stress(6)
       integer :: c, i
 
       do c = 1, p%n_chunks
@@ -62,11 +62,10 @@ contains
          select type (law => bodies%laws(bodies%law_of(p%body(c)))%law)
          type is (elastic_t)
             do i = 1, p%count(c)
-               associate (stress => p%q(i, c_s:c_s + 5, c))
-                  call start_trace(p, i, c, strain_of(stress, law%mu, &
-                     0.5_wp*law%lambda/(law%lambda + law%mu)), &
-                     p%q(i, c_vol, c)*law%strain_energy(stress))
-               end associate
+               stress = p%q(i, c_s:c_s + 5, c)
+               call start_trace(p, i, c, strain_of(stress, law%mu, &
+                  0.5_wp*law%lambda/(law%lambda + law%mu)), &
+                  p%q(i, c_vol, c)*law%strain_energy(stress))
             end do
          end select
       end do
