@@ -18,6 +18,7 @@ module xmpm_stages
    use xmpm_curves, only: curve_value
    use xmpm_crack, only: advance_crack
    use xmpm_fracture, only: measure_front
+   use xmpm_front_flags, only: flag_conditions
    use xmpm_meet, only: measure_contact, meet_bodies
    use xmpm_model, only: model_t
    implicit none
@@ -320,6 +321,7 @@ contains
          end if
          call measure_front(m%fracture, i, m%cracks, m%comm, m%grid, m%particles, m%bodies, &
             m%kernels, m%sided, m%loads, m%time, speed)
+         call flag_conditions(m%boundaries, m%comm, m%grid, m%fracture%values(i))
          deallocate (speed)
       end do
       call stop_stage(m%clock, stage_fracture)
