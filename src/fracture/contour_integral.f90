@@ -79,11 +79,11 @@ contains
    end subroutine sum_moments
 
    !> Whether a particle counts anywhere on a circle.
-   pure function touches(d, radius, support) result(close)
+   pure function touches(d, radius, support) result(yes)
       real(wp), intent(in) :: d(3), radius, support   !! [length]
-      logical :: close
+      logical :: yes
 
-      close = abs(d(3)) < support .and. abs(norm2(d(:2)) - radius) < support
+      yes = abs(d(3)) < support .and. abs(norm2(d(:2)) - radius) < support
    end function touches
 
    pure subroutine add_to_moments(d, side, radius, support, moment)
