@@ -15,7 +15,7 @@ module xmpm_domain_integral
    use xmpm_front, only: front_t
    use xmpm_samples, only: sample_t
    use xmpm_front_points, only: front_points_t, window_at
-   use xmpm_near_tip, only: near_tip_fields, strain_of
+   use xmpm_near_tip, only: near_tip_fields, line_force_field, strain_of
    implicit none
    private
 
@@ -29,14 +29,17 @@ module xmpm_domain_integral
       real(wp) :: half_width = 0               !! of the window along the front [length]
       real(wp) :: reach = 0                    !! particles at parts of the front further away
                                                !! than this do not count [length]
+      real(wp) :: support = 0                  !! of the fits on circles [length]
    end type domain_shape_t
 
    !> Sums of this rank for each point.
    type :: domain_sums_t
       real(wp), allocatable :: j(:, :)               !! (nr,n) J times window length [energy/length]
-      real(wp), allocatable :: interaction(:, :, :)  !! (3,nr,n) with unit modes I, II, III
+      real(wp), allocatable :: interaction(:, :, :)  !! (4,nr,n) with unit modes I, II, III and
+                                                     !! with a unit line force
       real(wp), allocatable :: volume(:, :)          !! (nr,n) integral of w l [length^3]
       real(wp), allocatable :: material(:, :)        !! (4,n) volume, and it times lambda, mu, rho
+      real(wp), allocatable :: along(:, :)           !! (5,n) fit of the strain along the front
    end type domain_sums_t
 
 contains
@@ -46,8 +49,8 @@ contains
       type(domain_sums_t), intent(out) :: sums
       integer, intent(in) :: n_radii, n
 
-      allocate (sums%j(n_radii, n), sums%interaction(3, n_radii, n), sums%volume(n_radii, n), &
-                sums%material(4, n), source=0.0_wp)
+      allocate (sums%j(n_radii, n), sums%interaction(4, n_radii, n), sums%volume(n_radii, n), &
+                sums%material(4, n), sums%along(5, n), source=0.0_wp)
    end subroutine clear_sums
 
    !> Add all samples to the points near them.
@@ -108,7 +111,7 @@ contains
       type(domain_shape_t), intent(in) :: shape
       real(wp), intent(in) :: speed, drift(3)
       type(domain_sums_t), intent(inout) :: sums
-      real(wp) :: flux(3, 4), source(4), across(4), value(4), d(3), l, dl, w, dw
+      real(wp) :: flux(3, 5), source(5), across(5), value(5), d(3), l, dl, w, dw
       integer :: k
 
       d = matmul(s%x - points%x(:, m), points%frame(:, :, m))
@@ -126,16 +129,36 @@ contains
          sums%volume(k, m) = sums%volume(k, m) + s%volume*w*l
       end do
       sums%material(:, m) = sums%material(:, m) + s%volume*[1.0_wp, s%lambda, s%mu, s%density]
+      if (s%r < shape%inner) sums%along(:, m) = sums%along(:, m) + s%volume*l &
+         *strain_along(s, points%frame(:, :, m), points%turn(:, :, m), d, shape%inner)
    end subroutine add_sample
 
-   !> Flux and source of J (1) and of the interaction with modes I to III (2:4), in the frame.
+   !> Products of a fit of the strain along the front, e_33 = a + b g: 1, g, g**2, e_33, g e_33.
+   !>
+   !> On a curved front u_1 of mode I, that grows with r**(1/2), is a strain along it; g has its
+   !> form, and a is what is left at the front.
+   pure function strain_along(s, e, turn, d, inner) result(products)
+      type(sample_t), intent(in) :: s
+      real(wp), intent(in) :: e(3, 3), turn(3, 3)   !! frame, turn of the material
+      real(wp), intent(in) :: d(3), inner           !! place in the frame, length of g [length]
+      real(wp) :: products(5), g, r, strain
+
+      r = norm2(d(:2))
+      g = 0
+      if (r > 0) g = sqrt(0.5_wp*(r + d(1))/inner)*(2 - 2*s%lambda/(s%lambda + s%mu) + 1 - d(1)/r)
+      strain = 1 - dot_product(e(:, 3), matmul(turn, matmul(s%back, e(:, 3))))
+      products = [1.0_wp, g, g*g, strain, g*strain]
+   end function strain_along
+
+   !> Flux and source of J (1), of the interaction with modes I to III (2:4) and with a line force
+   !> (5), in the frame.
    pure subroutine fluxes(s, e, turn, d, flux, source)
       type(sample_t), intent(in) :: s
       real(wp), intent(in) :: e(3, 3), turn(3, 3)   !! frame, turn of the material
       real(wp), intent(in) :: d(3)                  !! place in the frame [length]
-      real(wp), intent(out) :: flux(3, 4)           !! [stress], interaction [stress/K]
-      real(wp), intent(out) :: source(4)            !! [force], interaction [force/K]
-      real(wp) :: t(3, 3), h(3), f(3), unit_stress(6, 3), slope(3, 3), poisson, energy
+      real(wp), intent(out) :: flux(3, 5)           !! [stress], interaction [stress/K]
+      real(wp), intent(out) :: source(5)            !! [force], interaction [force/K]
+      real(wp) :: t(3, 3), h(3), f(3), unit_stress(6, 4), slope(3, 4), poisson, energy
       integer :: k
 
       t = matmul(transpose(e), matmul(full(s%stress), e))
@@ -145,8 +168,9 @@ contains
       flux(1, 1) = flux(1, 1) - s%work
       source(1) = dot_product(f, h)
       poisson = 0.5_wp*s%lambda/(s%lambda + s%mu)
-      call near_tip_fields(d(1), d(2), s%side, s%mu, poisson, unit_stress, slope)
-      do k = 1, 3
+      call near_tip_fields(d(1), d(2), s%side, s%mu, poisson, unit_stress(:, :3), slope(:, :3))
+      call line_force_field(d(1), d(2), s%mu, poisson, unit_stress(:, 4), slope(:, 4))
+      do k = 1, 4
          energy = product_of(t, strain_of(unit_stress(:, k), s%mu, poisson))
          flux(:, k + 1) = matmul(t, slope(:, k)) + matmul(full(unit_stress(:, k)), h)
          flux(1, k + 1) = flux(1, k + 1) - energy

@@ -20,6 +20,7 @@ module xmpm_fracture
    use xmpm_material_drift, only: drift_sums, drift_of
    use xmpm_front_points, only: list_points, end_points, front_points_t
    use xmpm_domain_integral, only: domain_shape_t, domain_sums_t, clear_sums, sum_domains
+   use xmpm_rates, only: rates_t, find_rates, method_domain
    use xmpm_front_values, only: front_values_t, clear_values, find_values, flag_other
    implicit none
    private
@@ -31,6 +32,7 @@ module xmpm_fracture
       integer, allocatable :: cracks(:)             !! cracks whose fronts are looked at
       real(wp) :: every = 0                         !! interval, 0 for none [time]
       real(wp), allocatable :: at(:)                !! single times, ascending [time]
+      integer, allocatable :: methods(:)            !! method_*, the first answers
       type(domain_shape_t) :: shape                 !! of the domains
       real(wp) :: behind = 0                        !! where openings are taken [length]
       type(front_values_t), allocatable :: values(:)   !! of each crack in the list, last time
@@ -91,6 +93,9 @@ contains
       type(front_values_t) :: values
       type(sample_t), allocatable :: samples(:)
       type(domain_sums_t) :: sums
+      type(rates_t) :: rates
+      real(wp), allocatable :: drift(:, :)
+      real(wp) :: reach
 
       associate (number => fracture%cracks(which), shape => fracture%shape)
          crack = cracks(number)
@@ -100,14 +105,19 @@ contains
          call list_points(crack, values%points)
          call clear_values(values, values%points%n)
          values%speed = speed
-         call collect_samples(crack, number, maxval(shape%radius), grid, p, bodies, kernels, &
-            sided, loads, time, samples)
+         reach = maxval(shape%radius)
+         if (any(fracture%methods /= method_domain)) reach = reach + shape%support
+         call collect_samples(crack, number, reach, grid, p, bodies, kernels, sided, loads, time, &
+            samples)
          call find_ends(crack%front, comm, grid%lattice%size, samples, values%points)
          call clear_sums(sums, size(shape%radius), values%points%n)
-         call sum_domains(samples, crack%front, values%points, shape, speed, &
-            drift_at(samples, values%points, speed, comm), sums)
+         drift = drift_at(samples, values%points, speed, comm)
+         call sum_domains(samples, crack%front, values%points, shape, speed, drift, sums)
          call sum_over_ranks(comm, sums)
-         call find_values(crack, shape, sums, fracture%behind, values)
+         call find_rates(fracture%methods, comm, samples, crack%front, values%points, shape, &
+            speed, &
+            drift, sums, rates)
+         call find_values(crack, shape, sums, rates, fracture%behind, values)
          call flag_neighbours(cracks, number, values)
       end associate
       fracture%values(which) = values
@@ -200,16 +210,18 @@ contains
 
       nr = size(sums%j, 1)
       n = size(sums%j, 2)
-      allocate (all(5*nr + 4, n))
+      allocate (all(6*nr + 9, n))
       all(:nr, :) = sums%j
-      all(nr + 1:4*nr, :) = reshape(sums%interaction, [3*nr, n])
-      all(4*nr + 1:5*nr, :) = sums%volume
-      all(5*nr + 1:, :) = sums%material
+      all(nr + 1:5*nr, :) = reshape(sums%interaction, [4*nr, n])
+      all(5*nr + 1:6*nr, :) = sums%volume
+      all(6*nr + 1:6*nr + 4, :) = sums%material
+      all(6*nr + 5:, :) = sums%along
       call sum_all(comm, all)
       sums%j = all(:nr, :)
-      sums%interaction = reshape(all(nr + 1:4*nr, :), [3, nr, n])
-      sums%volume = all(4*nr + 1:5*nr, :)
-      sums%material = all(5*nr + 1:, :)
+      sums%interaction = reshape(all(nr + 1:5*nr, :), [4, nr, n])
+      sums%volume = all(5*nr + 1:6*nr, :)
+      sums%material = all(6*nr + 1:6*nr + 4, :)
+      sums%along = all(6*nr + 5:, :)
    end subroutine sum_over_ranks
 
    !> Mark the points whose domain meets another crack, or another part of their own fronts.

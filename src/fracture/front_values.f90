@@ -2,17 +2,18 @@
 !> sums over the domains.
 module xmpm_front_values
    use xmpm_kinds, only: wp
-   use xmpm_front_points, only: front_points_t, window_length
+   use xmpm_front_points, only: front_points_t
    use xmpm_domain_integral, only: domain_sums_t, domain_shape_t, plateau_area
    use xmpm_velocity_functions, only: elastic_constants_t, elastic_constants, velocity_functions, &
       split_rate
+   use xmpm_rates, only: rates_t
    use xmpm_hoop_stress, only: hoop_stress_t
    use xmpm_opening, only: opening_behind
    use xmpm_crack, only: crack_t
    implicit none
    private
 
-   public :: front_values_t, find_values, clear_values
+   public :: front_values_t, find_values, clear_values, t_stress
    public :: flag_leaves, flag_other, flag_held, flag_end, flag_closed, flag_smaller
 
    integer, parameter :: flag_leaves = 1     !! no domain fits into the material
@@ -33,6 +34,7 @@ module xmpm_front_values
       real(wp), allocatable :: j_bar(:, :)     !! (2,n) its lowest and highest over radii
       real(wp), allocatable :: k(:, :)         !! (3,n) K_I, K_II, K_III [stress length^(1/2)]
       real(wp), allocatable :: k_bar(:, :, :)  !! (2,3,n) lowest and highest, radii and methods
+      real(wp), allocatable :: t(:)            !! (n) T-stress [stress]
       real(wp), allocatable :: kink(:)         !! (n) angle of the largest hoop stress [rad]
       real(wp), allocatable :: k_star(:)       !! (n) K* in that direction
       real(wp), allocatable :: speed(:)        !! (n) of the front [length/time]
@@ -49,16 +51,18 @@ contains
       integer, intent(in) :: n
 
       allocate (values%j(n), values%j_bar(2, n), values%k(3, n), values%k_bar(2, 3, n), &
-         values%kink(n), values%k_star(n), values%speed(n), values%radius(n), source=0.0_wp)
+         values%t(n), values%kink(n), values%k_star(n), values%speed(n), values%radius(n), &
+         source=0.0_wp)
       allocate (values%flags(n), source=0)
       allocate (values%material(n))
    end subroutine clear_values
 
    !> Values of all points from the sums of all ranks.
-   subroutine find_values(crack, shape, sums, behind, values)
+   subroutine find_values(crack, shape, sums, rates, behind, values)
       type(crack_t), intent(in) :: crack               !! gathered
       type(domain_shape_t), intent(in) :: shape
       type(domain_sums_t), intent(in) :: sums          !! of all ranks
+      type(rates_t), intent(in) :: rates               !! J by all methods
       real(wp), intent(in) :: behind                   !! where openings are taken [length]
       type(front_values_t), intent(inout) :: values    !! points and speed are known
       integer :: i
@@ -72,41 +76,44 @@ contains
          associate (s => sums%material(:, i))
             values%material(i) = elastic_constants(s(2)/s(1), s(3)/s(1), s(4)/s(1))
          end associate
-         call values_of_point(crack, shape, sums, behind, values, i)
+         call values_of_point(crack, shape, sums, rates, behind, values, i)
       end do
    end subroutine find_values
 
    !> Values of one point: the largest domain that fits answers, all that fit make the bars.
-   subroutine values_of_point(crack, shape, sums, behind, values, i)
+   subroutine values_of_point(crack, shape, sums, rates, behind, values, i)
       type(crack_t), intent(in) :: crack
       type(domain_shape_t), intent(in) :: shape
       type(domain_sums_t), intent(in) :: sums
+      type(rates_t), intent(in) :: rates
       real(wp), intent(in) :: behind
       type(front_values_t), intent(inout) :: values
       integer, intent(in) :: i
-      real(wp) :: length, j(size(shape%radius)), k(3, size(shape%radius), 2), a(3), opening(3)
-      integer :: fits, n, r
+      real(wp) :: k(3, size(shape%radius), 0:size(rates%j, 2)), a(3), opening(3)
+      integer :: fits, n, r, m
 
-      length = window_length(crack%front, values%points, i, shape%half_width, shape%reach)
-      call count_fitting(shape, sums%volume(:, i)/max(length, tiny(length)), fits)
+      call count_fitting(shape, sums%volume(:, i)/max(rates%length(i), tiny(1.0_wp)), fits)
+      fits = min(fits, findloc([rates%found(:, i), .false.], .false., 1) - 1)
       n = max(fits, 1)
       if (fits < size(shape%radius)) values%flags(i) = values%flags(i) &
          + merge(flag_smaller, flag_leaves, fits > 0)
-      j = sums%j(:, i)/length
-      associate (e => values%material(i))
+      associate (e => values%material(i), j => rates%j(:, :, i), length => rates%length(i))
          a = velocity_functions(e, values%speed(i))
          opening = opening_behind(crack, values%points, i, behind)
          if (opening(1) < -overlap*behind) values%flags(i) = values%flags(i) + flag_closed
          opening(1) = max(opening(1), 0.0_wp)
          do r = 1, n
-            k(:, r, 1) = split_rate(e, a, j(r), opening)
-            k(:, r, 2) = sums%interaction(:, r, i)/length*e%mu/velocity_functions(e, 0.0_wp)
+            do m = 1, size(j, 2)
+               k(:, r, m) = split_rate(e, a, j(r, m), opening)
+            end do
+            k(:, r, 0) = sums%interaction(:3, r, i)/length*e%mu/velocity_functions(e, 0.0_wp)
          end do
+         values%j(i) = j(n, 1)
+         values%j_bar(:, i) = [minval(j(:n, :)), maxval(j(:n, :))]
+         values%t(i) = t_stress(e, sums%interaction(4, n, i)/length, sums%along(:, i))
       end associate
-      if (.not. opening(1) > 0) k(1, :, 2) = 0
-      if (values%speed(i) > 0) k(:, :, 2) = k(:, :, 1)
-      values%j(i) = j(n)
-      values%j_bar(:, i) = [minval(j(:n)), maxval(j(:n))]
+      if (.not. opening(1) > 0) k(1, :, 0) = 0
+      if (values%speed(i) > 0) k(:, :, 0) = k(:, :, 1)
       values%k(:, i) = k(:, n, 1)
       do r = 1, 3
          values%k_bar(:, r, i) = [minval(k(r, :n, :)), maxval(k(r, :n, :))]
@@ -114,6 +121,23 @@ contains
       values%radius(i) = shape%radius(n)
       call judge(values, i)
    end subroutine values_of_point
+
+   !> E/(1 - nu**2) (I + nu e_33) with the interaction I of a unit line force and the strain along
+   !> the front at its points, of a fit.
+   pure function t_stress(e, interaction, along) result(t)
+      type(elastic_constants_t), intent(in) :: e
+      real(wp), intent(in) :: interaction   !! [length^2/force]
+      real(wp), intent(in) :: along(5)      !! sums of 1, g, g**2, e_33, g e_33
+      real(wp) :: t, strain, determinant    !! [stress]
+
+      strain = 0
+      if (along(1) > 0) strain = along(4)/along(1)
+      determinant = along(1)*along(3) - along(2)**2
+      if (determinant > 1e-6_wp*along(1)*along(3)) then
+         strain = (along(3)*along(4) - along(2)*along(5))/determinant
+      end if
+      t = 2*e%mu/(1 - e%poisson)*(interaction + e%poisson*strain)
+   end function t_stress
 
    !> Number of radii, from the smallest on, whose domain is full of material.
    pure subroutine count_fitting(shape, area, fits)

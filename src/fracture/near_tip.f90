@@ -1,11 +1,11 @@
-!> The static near-tip fields of a straight crack front in plane strain and antiplane shear: the
-!> auxiliary states of the interaction integral.
+!> The static near-tip fields of a straight crack front in plane strain and antiplane shear, and
+!> that of a line force: the auxiliary states of the interaction integral.
 module xmpm_near_tip
    use xmpm_kinds, only: wp, pi
    implicit none
    private
 
-   public :: near_tip_fields, strain_of
+   public :: near_tip_fields, line_force_field, strain_of
 
 contains
 
@@ -61,6 +61,30 @@ contains
          d = scale*f*(0.5_wp*cosine*g - sine*dg)
       end function slope
    end subroutine near_tip_fields
+
+   !> Stress and u_i,1 of a unit force per length along x1 on the front, in plane strain: the
+   !> auxiliary state of the T-stress (Kfouri 1986).
+   pure subroutine line_force_field(x1, x2, mu, poisson, stress, slope)
+      real(wp), intent(in) :: x1, x2          !! ahead of and above the front [length]
+      real(wp), intent(in) :: mu, poisson     !! shear modulus [stress], Poisson's ratio
+      real(wp), intent(out) :: stress(6)      !! 11 22 33 12 23 13 [1/length]
+      real(wp), intent(out) :: slope(3)       !! u_i,1 [1/(length stress)]
+      real(wp) :: r, c, s, f
+
+      stress = 0
+      slope = 0
+      r = sqrt(x1*x1 + x2*x2)
+      if (.not. r > 0) return
+      c = x1/r
+      s = x2/r
+      f = -1/(pi*r)
+      stress(1) = f*c**3
+      stress(2) = f*c*s*s
+      stress(3) = poisson*f*c
+      stress(4) = f*c*c*s
+      slope(1) = 0.5_wp/mu*f*c*(c*c - poisson)
+      slope(2) = 0.5_wp/mu*f*s*(poisson - s*s)
+   end subroutine line_force_field
 
    !> Strain of a stress, tensor components in the order 11 22 33 12 23 13.
    pure function strain_of(stress, mu, poisson) result(strain)

@@ -321,6 +321,9 @@ contains
          meaning='single times of the values'))
       call add_key(t, key_t(name='cracks', kind=kind_text, most=any_number, &
          meaning='names of the *CRACK blocks; all that have a front where not given'))
+      call add_key(t, key_t(name='methods', kind=kind_word, most=any_number, default='domain', &
+         words='domain contour paper', &
+         meaning='estimators of J: the first answers, the others widen the error bars'))
       call add_key(t, key_t(name='radii', most=any_number, dimension='length', range=positive, &
          meaning='radii of the domains, growing; 3, 4 and 5 cells where not given'))
       call add_key(t, key_t(name='window', dimension='length', range=positive, &

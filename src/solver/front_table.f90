@@ -11,11 +11,11 @@ module xmpm_front_table
 
    public :: front_names, front_units, write_fronts
 
-   integer, parameter :: columns = 26   !! of the table
+   integer, parameter :: columns = 27   !! of the table
    character(len=10), parameter :: names(columns) = [character(len=10) :: 'time', 'step', 'crack', &
       'front', 'point', 's', 'x', 'y', 'z', 'J', 'K_I', 'K_II', 'K_III', 'J_low', 'J_high', &
-      'K_I_low', 'K_I_high', 'K_II_low', 'K_II_high', 'K_III_low', 'K_III_high', 'kink_angle', &
-      'K_star', 'tip_speed', 'flags', 'radius']
+      'K_I_low', 'K_I_high', 'K_II_low', 'K_II_high', 'K_III_low', 'K_III_high', 'T', &
+      'kink_angle', 'K_star', 'tip_speed', 'flags', 'radius']
 
 contains
 
@@ -43,10 +43,11 @@ contains
       list(11:13) = k
       list(14:15) = j
       list(16:21) = k
-      list(22) = 'rad'
-      list(23) = k
-      list(24) = unit_text(deck, 'velocity')
-      list(26) = length
+      list(22) = unit_text(deck, 'stress')
+      list(23) = 'rad'
+      list(24) = k
+      list(25) = unit_text(deck, 'velocity')
+      list(27) = length
       units = list
    end function front_units
 
@@ -72,17 +73,17 @@ contains
       type(front_values_t), intent(in) :: v
       integer, intent(in) :: k
       type(string_t) :: cells(columns - 3)
-      real(wp) :: numbers(19)
+      real(wp) :: numbers(20)
       integer :: i
 
       cells(1) = cell(int(v%points%chain(k), i8))
       cells(2) = cell(int(k - findloc(v%points%chain, v%points%chain(k), 1) + 1, i8))
       numbers = [v%points%s(k), v%points%x(:, k), v%j(k), v%k(:, k), v%j_bar(:, k), &
-         v%k_bar(:, :, k), v%kink(k), v%k_star(k), v%speed(k)]
+         v%k_bar(:, :, k), v%t(k), v%kink(k), v%k_star(k), v%speed(k)]
       do i = 1, size(numbers)
          cells(2 + i) = cell(numbers(i))
       end do
-      cells(22) = cell(int(v%flags(k), i8))
-      cells(23) = cell(v%radius(k))
+      cells(23) = cell(int(v%flags(k), i8))
+      cells(24) = cell(v%radius(k))
    end function cells_of
 end module xmpm_front_table

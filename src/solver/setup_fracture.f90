@@ -6,6 +6,7 @@ module xmpm_setup_fracture
    use xmpm_deck, only: deck_t, block_t, count_blocks, find_block, block_named, has, real_of, &
       reals_of, texts_of, complain
    use xmpm_fracture, only: start_traces
+   use xmpm_rates, only: method_domain, method_contour, method_paper
    use xmpm_model, only: model_t
    implicit none
    private
@@ -13,6 +14,7 @@ module xmpm_setup_fracture
    public :: set_up_fracture
 
    real(wp), parameter :: plateau = 1.5_wp   !! inner radius of a domain [cells]
+   real(wp), parameter :: support = 1.6_wp   !! of the fits on circles [cells]
 
 contains
 
@@ -24,9 +26,11 @@ contains
       integer :: i
 
       allocate (m%fracture%cracks(0), m%fracture%at(0))
+      m%fracture%methods = [method_domain]
       if (count_blocks(deck, 'fracture') > 0) then
          block = find_block(deck, 'fracture', 1)
          call read_times(block, m)
+         call read_methods(deck, block, m)
          call read_shape(deck, block, m)
          call read_crack_list(deck, block, m)
       end if
@@ -45,6 +49,29 @@ contains
       if (has(block, 'at')) m%fracture%at = reals_of(block, 'at')
    end subroutine read_times
 
+   !> Estimators of J, each once.
+   subroutine read_methods(deck, block, m)
+      type(deck_t), intent(inout) :: deck
+      type(block_t), intent(in) :: block
+      type(model_t), intent(inout) :: m
+      type(string_t), allocatable :: names(:)
+      integer :: i, number
+
+      if (.not. has(block, 'methods')) return
+      names = texts_of(block, 'methods')
+      m%fracture%methods = [integer ::]
+      do i = 1, size(names)
+         select case (names(i)%s)
+         case ('contour'); number = method_contour
+         case ('paper'); number = method_paper
+         case default; number = method_domain
+         end select
+         if (any(m%fracture%methods == number)) call complain(deck, block, 'methods', &
+            "the method '"//names(i)%s//"' is named twice")
+         m%fracture%methods = [m%fracture%methods, number]
+      end do
+   end subroutine read_methods
+
    !> Radii, window and the place of the opening; what is not given counts in cells.
    subroutine read_shape(deck, block, m)
       type(deck_t), intent(inout) :: deck
@@ -55,6 +82,7 @@ contains
       h = m%grid%lattice%size
       associate (shape => m%fracture%shape)
          shape%inner = plateau*h
+         shape%support = support*h
          shape%radius = h*[3.0_wp, 4.0_wp, 5.0_wp]
          if (has(block, 'radii')) shape%radius = reals_of(block, 'radii')
          shape%half_width = 2*h
