@@ -115,8 +115,7 @@ contains
          call sum_domains(samples, crack%front, values%points, shape, speed, drift, sums)
          call sum_over_ranks(comm, sums)
          call find_rates(fracture%methods, comm, samples, crack%front, values%points, shape, &
-            speed, &
-            drift, sums, rates)
+            speed, drift, sums, rates)
          call find_values(crack, shape, sums, rates, fracture%behind, values)
          call flag_neighbours(cracks, number, values)
       end associate

@@ -55,8 +55,8 @@ contains
                rates%j(:, k, i) = sums%j(:, i)/rates%length(i)
             else
                call rates_of_circles(circles, i, shape%radius, rates%length(i), &
-                  sums%material(:, i), &
-                  methods(k) == method_paper, speed(i), drift(:, i), rates%j(:, k, i))
+                  sums%material(:, i), methods(k) == method_paper, speed(i), drift(:, i), &
+                  rates%j(:, k, i))
             end if
          end do
       end do
