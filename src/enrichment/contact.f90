@@ -9,6 +9,7 @@ module xmpm_contact
    public :: apply_impulses, impulse_between, is_closed, note_loss, velocity_of, hold_side
 
    integer, parameter :: sweeps = 4            !! through the pairs, where a node has several
+   real(wp), parameter :: slipping = 1e-9_wp   !! what friction may lack of its most when a pair slips
    real(wp), parameter :: touching = 1e-3_wp   !! gap that counts as closed [cells]
 
 contains
@@ -29,7 +30,7 @@ contains
       real(wp) :: impulse(3)
       integer :: i, sweep
 
-      if (whole) call note_forces(contact, grid)
+      if (whole) contact%impulse = 0
       do sweep = 1, merge(sweeps, 1, any(contact%many > 1))
          do i = 1, contact%n
             if (.not. is_closed(contact, grid, i)) cycle
@@ -41,49 +42,10 @@ contains
             if (.not. any(abs(impulse) > 0)) cycle
             call push(contact, grid, i, 1, field, -impulse, whole)
             call push(contact, grid, i, 2, field, impulse, whole)
-            if (whole) then
-               contact%impulse(:, i) = contact%impulse(:, i) + impulse
-            else
-               call note_straining(contact, grid, i, impulse)
-            end if
+            if (whole) contact%impulse(:, i) = contact%impulse(:, i) + impulse
          end do
       end do
    end subroutine apply_impulses
-
-   !> Keep what forces give the rows in this step, before any impulse.
-   subroutine note_forces(contact, grid)
-      type(contact_t), intent(inout) :: contact
-      type(grid_t), intent(in) :: grid
-      integer :: i, side
-
-      contact%impulse = 0
-      do i = 1, contact%n
-         do side = 1, 2
-            associate (node => grid%node(:, contact%row(side, i)))
-               contact%force(:, side, i) = node(f_mass)*node(f_change:f_change + 2)
-            end associate
-         end do
-      end do
-   end subroutine note_forces
-
-   !> Energy of an impulse on the velocity that strains: particles do not take it, so that the next
-   !> step's velocity before the update is without it. Half the work of the forces on the difference
-   !> is then in the kinetic energy but not in the stress work.
-   subroutine note_straining(contact, grid, i, impulse)
-      type(contact_t), intent(inout) :: contact
-      type(grid_t), intent(in) :: grid
-      integer, intent(in) :: i
-      real(wp), intent(in) :: impulse(3)
-      integer :: side
-      real(wp) :: change(3)
-
-      if (.not. grid%mine(contact%row(1, i))) return
-      do side = 1, 2
-         change = real(2*side - 3, wp)*impulse/grid%node(f_mass, contact%row(side, i))
-         where (contact%held(:, side, i)) change = 0
-         contact%lost = contact%lost + 0.5_wp*dot_product(contact%force(:, side, i), change)
-      end do
-   end subroutine note_straining
 
    !> Whether the gap of a pair is closed.
    pure function is_closed(contact, grid, i) result(closed)
@@ -108,9 +70,7 @@ contains
       n = contact%normal(:, i)
       v = velocity_of(contact, grid, i, 2, field) - velocity_of(contact, grid, i, 1, field)
       if (.not. dot_product(v, n) < 0) return
-      yield = 0
-      where (.not. contact%held(:, 1, i)) yield = 1/grid%node(f_mass, contact%row(1, i))
-      where (.not. contact%held(:, 2, i)) yield = yield + 1/grid%node(f_mass, contact%row(2, i))
+      yield = yield_of(contact, grid, i)
       if (.not. dot_product(n*n, yield) > 0) return
       normal = -dot_product(v, n)/dot_product(n*n, yield)
       impulse = normal*n
@@ -125,9 +85,9 @@ contains
       impulse = impulse - across*t
    end subroutine impulse_between
 
-   !> Impulse that keeps a pair which the nodal update found in contact: the normal velocities
-   !> become
-   !> one, also where they separate, for else the stress would do work that no motion gives back.
+   !> Impulse that keeps a pair which the nodal update found in contact: the normal velocities become
+   !> one, also where they separate, for else the stress would do work that no motion gives back; the
+   !> others too where the pair sticks.
    pure subroutine keep_closed(contact, grid, i, field, impulse)
       type(contact_t), intent(in) :: contact
       type(grid_t), intent(in) :: grid
@@ -138,12 +98,38 @@ contains
       impulse = 0
       n = contact%normal(:, i)
       v = velocity_of(contact, grid, i, 2, field) - velocity_of(contact, grid, i, 1, field)
+      yield = yield_of(contact, grid, i)
+      if (sticks(contact, i)) then
+         where (yield > 0) impulse = -v/yield
+      else if (dot_product(n*n, yield) > 0) then
+         impulse = -dot_product(v, n)/dot_product(n*n, yield)*n
+      end if
+   end subroutine keep_closed
+
+   !> Whether friction holds a pair that had an impulse.
+   pure function sticks(contact, i) result(holds)
+      type(contact_t), intent(in) :: contact
+      integer, intent(in) :: i
+      logical :: holds
+      real(wp) :: normal, across(3)
+
+      normal = dot_product(contact%impulse(:, i), contact%normal(:, i))
+      across = contact%impulse(:, i) - normal*contact%normal(:, i)
+      holds = norm2(across) < (1 - slipping)*normal*contact%friction(contact%group(1, i), &
+         contact%group(2, i))
+   end function sticks
+
+   !> Change of the difference of the velocities by an impulse: both inverse masses, 0 where held.
+   pure function yield_of(contact, grid, i) result(yield)
+      type(contact_t), intent(in) :: contact
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: i
+      real(wp) :: yield(3)   !! [1/mass]
+
       yield = 0
       where (.not. contact%held(:, 1, i)) yield = 1/grid%node(f_mass, contact%row(1, i))
       where (.not. contact%held(:, 2, i)) yield = yield + 1/grid%node(f_mass, contact%row(2, i))
-      if (.not. dot_product(n*n, yield) > 0) return
-      impulse = -dot_product(v, n)/dot_product(n*n, yield)*n
-   end subroutine keep_closed
+   end function yield_of
 
    !> Velocity of one side of a pair, with what is prescribed.
    pure function velocity_of(contact, grid, i, side, field) result(v)
@@ -175,34 +161,55 @@ contains
       end if
    end subroutine push
 
-   !> Add the energy that the impulses of the nodal update took: minus impulse times the mean of
-   !> relative velocity before and after the step, which is exact for the rows' kinetic energy.
-   !> `before` is the velocity of rigid bodies before the step; theirs after it is prescribed.
+   !> Add the energy that the impulses of the nodal update took.
+   !>
+   !> An impulse balances the forces that press the bodies together, which costs nothing where both
+   !> strain with one velocity, and stops what they had of relative velocity u before the update:
+   !> that costs m u**2/2 with the mass m that yields. Slip costs friction times the mean slip.
+   !> `before` is the velocity of rigid bodies before the step.
    subroutine note_loss(contact, grid, before)
       type(contact_t), intent(inout) :: contact
       type(grid_t), intent(in) :: grid
       real(wp), intent(in) :: before(:, :)   !! (3,rigid bodies) [length/time]
-      real(wp) :: mean(3, 2)
-      integer :: i, side, r
+      real(wp) :: u(3), v(3), n(3), across(3), yield(3)
+      integer :: i
 
       do i = 1, contact%n
          if (.not. any(abs(contact%impulse(:, i)) > 0)) cycle
          if (.not. grid%mine(contact%row(1, i))) cycle
-         do side = 1, 2
-            r = contact%rigid(contact%group(side, i))
-            mean(:, side) = velocity_of(contact, grid, i, side, f_velocity)
-            if (r > 0) then
-               mean(:, side) = 0.5_wp*(mean(:, side) + before(:, r))
-            else
-               associate (node => grid%node(:, contact%row(side, i)))
-                  mean(:, side) = 0.5_wp*(mean(:, side) + node(f_velocity:f_velocity + 2) &
-                     - node(f_change:f_change + 2))
-               end associate
-            end if
-         end do
-         contact%lost = contact%lost - dot_product(contact%impulse(:, i), mean(:, 2) - mean(:, 1))
+         n = contact%normal(:, i)
+         yield = yield_of(contact, grid, i)
+         u = old_velocity(contact, grid, i, 2, before) - old_velocity(contact, grid, i, 1, before)
+         if (sticks(contact, i)) then
+            contact%lost = contact%lost + 0.5_wp*sum(u**2/yield, mask=yield > 0)
+            cycle
+         end if
+         contact%lost = contact%lost + 0.5_wp*dot_product(u, n)**2/dot_product(n*n, yield)
+         across = contact%impulse(:, i) - dot_product(contact%impulse(:, i), n)*n
+         v = velocity_of(contact, grid, i, 2, f_velocity) &
+            - velocity_of(contact, grid, i, 1, f_velocity)
+         contact%lost = contact%lost - 0.5_wp*dot_product(across, u + v)
       end do
    end subroutine note_loss
+
+   !> Velocity of one side of a pair before the nodal update.
+   pure function old_velocity(contact, grid, i, side, before) result(v)
+      type(contact_t), intent(in) :: contact
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: i, side
+      real(wp), intent(in) :: before(:, :)
+      real(wp) :: v(3)
+      integer :: r
+
+      r = contact%rigid(contact%group(side, i))
+      if (r > 0) then
+         v = before(:, r)
+      else
+         associate (node => grid%node(:, contact%row(side, i)))
+            v = node(f_velocity:f_velocity + 2) - node(f_change:f_change + 2)
+         end associate
+      end if
+   end function old_velocity
 
    !> Prescribe a component of the pairs that use a row.
    pure subroutine hold_side(contact, row, component, velocity)

@@ -28,8 +28,6 @@ module xmpm_contact_pairs
       real(wp), allocatable :: normal(:, :)           !! (3,n) from the first to the second
       real(wp), allocatable :: gap(:)                 !! (n) along it [length]
       real(wp), allocatable :: impulse(:, :)          !! (3,n) on the second in this step [momentum]
-      real(wp), allocatable :: force(:, :, :)         !! (3,2,n) what forces give the rows in this
-                                                      !! step
                                                       !! [momentum]
       logical, allocatable :: held(:, :, :)           !! (3,2,n) components that are prescribed
       real(wp), allocatable :: prescribed(:, :, :)    !! (3,2,n) their velocity [length/time]
@@ -76,13 +74,13 @@ contains
 
       if (allocated(contact%row)) then
          deallocate (contact%row, contact%group, contact%first, contact%many, contact%place, &
-            contact%normal, contact%gap, contact%impulse, contact%force, contact%held, &
+            contact%normal, contact%gap, contact%impulse, contact%held, &
             contact%prescribed)
       end if
       contact%n = 0
       allocate (contact%row(2, n), contact%group(2, n), contact%normal(3, n))
       allocate (contact%gap(n), contact%place(3, n))
-      allocate (contact%impulse(3, n), contact%force(3, 2, n), source=0.0_wp)
+      allocate (contact%impulse(3, n), source=0.0_wp)
       allocate (contact%held(3, 2, n), contact%prescribed(3, 2, n))
       allocate (contact%first(n_rows), contact%many(n_rows), source=0)
    end subroutine make_room
