@@ -9,7 +9,8 @@ module xmpm_contact
    public :: apply_impulses, impulse_between, is_closed, note_loss, velocity_of, hold_side
 
    integer, parameter :: sweeps = 4            !! through the pairs, where a node has several
-   real(wp), parameter :: slipping = 1e-9_wp   !! what friction may lack of its most when a pair slips
+   real(wp), parameter :: slipping = 1e-9_wp   !! what friction may lack of its most when a pair
+                                               !! slips
    real(wp), parameter :: touching = 1e-3_wp   !! gap that counts as closed [cells]
 
 contains
@@ -85,8 +86,10 @@ contains
       impulse = impulse - across*t
    end subroutine impulse_between
 
-   !> Impulse that keeps a pair which the nodal update found in contact: the normal velocities become
-   !> one, also where they separate, for else the stress would do work that no motion gives back; the
+   !> Impulse that keeps a pair which the nodal update found in contact: the normal velocities
+   !> become
+   !> one, also where they separate, for else the stress would do work that no motion gives back;
+   !> the
    !> others too where the pair sticks.
    pure subroutine keep_closed(contact, grid, i, field, impulse)
       type(contact_t), intent(in) :: contact

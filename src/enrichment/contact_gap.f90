@@ -3,9 +3,11 @@
 !> Each body's own normal points from the centre of its part around the node to the node. It is
 !> right
 !> where the body is flat there and wrong at its corners; a flat body spreads as far across its
-!> normal as the shape function does. So the common normal is the sum of both centres' distances
-!> from
-!> the node, each with a weight by that spread.
+!> normal as the shape function does. So there are two directions for the
+!> common normal: the distance of both centres, right where both are alike, and one that leaves out
+!> a
+!> body which spreads less. The one with the larger gap separates the bodies better and is the
+!> normal.
 !>
 !> The gap along the normal n is that between the particles of both bodies around the node, which
 !> reach r from their middle: least of n.x - r of the second less largest of n.x + r of the
@@ -26,7 +28,8 @@ module xmpm_contact_gap
 
    public :: measure_gaps
 
-   integer, parameter :: flatness = 16   !! power of the spread in the weight of a body's normal
+   integer, parameter :: flatness = 16    !! power of the ratio of spreads in the weight of a body
+   real(wp), parameter :: alike = 0.6_wp  !! ratio of spreads from which both may count alike
 
 contains
 
@@ -38,7 +41,7 @@ contains
       real(wp), intent(in) :: half(:)          !! (bodies) half a particle's width [cells]
       type(sided_t), intent(in) :: sided
       type(grid_t), intent(in) :: grid
-      real(wp) :: moment(20, contact%n), extent(2, contact%n)
+      real(wp) :: moment(20, contact%n), normal(3, 2, contact%n), extent(4, contact%n), gap(2)
       integer, allocatable :: bins(:, :)
       integer :: i
 
@@ -50,20 +53,25 @@ contains
       call start_sum(contact%halo, comm, moment, 1, 20)
       call finish_sum(contact%halo, moment, 1, 20)
       do i = 1, contact%n
-         contact%normal(:, i) = contact%given_normal(:, contact%group(1, i), contact%group(2, i))
-         if (.not. any(abs(contact%normal(:, i)) > 0)) then
-            contact%normal(:, i) = common_normal(moment(:10, i), moment(11:, i), grid%lattice%size)
-         end if
+         normal(:, :, i) = spread(contact%given_normal(:, contact%group(1, i), &
+            contact%group(2, i)), 2, 2)
+         if (any(abs(normal(:, :, i)) > 0)) cycle
+         normal(:, :, i) = common_normals(moment(:10, i), moment(11:, i), grid%lattice%size)
       end do
       extent = -huge(1.0_wp)
       do i = 1, size(bins, 2)
-         call widen(contact, p, half, sided, grid%lattice, bins(1, i), bins(2, i), extent)
+         call widen(contact, p, half, sided, grid%lattice, bins(1, i), bins(2, i), normal, &
+            extent)
       end do
       call take_largest(contact%halo, comm, extent)
       do i = 1, contact%n
          contact%gap(i) = huge(1.0_wp)
+         contact%normal(:, i) = 0
          if (.not. (moment(1, i) > 0 .and. moment(11, i) > 0)) cycle
-         if (any(abs(contact%normal(:, i)) > 0)) contact%gap(i) = -extent(1, i) - extent(2, i)
+         if (.not. any(abs(normal(:, 1, i)) > 0)) cycle
+         gap = -extent(1:2, i) - extent(3:4, i)
+         contact%gap(i) = maxval(gap)
+         contact%normal(:, i) = normal(:, maxloc(gap, dim=1), i)
       end do
    end subroutine measure_gaps
 
@@ -144,17 +152,24 @@ contains
       end do
    end subroutine add_particle
 
-   !> Normal from the first body to the second; 0 where one is missing.
-   pure function common_normal(a, b, h) result(n)
+   !> Two normals from the first body to the second; 0 where one is missing.
+   pure function common_normals(a, b, h) result(n)
       real(wp), intent(in) :: a(10), b(10)   !! moments of both
       real(wp), intent(in) :: h              !! cell size [length]
-      real(wp) :: n(3)
+      real(wp) :: n(3, 2), s(2)
+      integer :: k
 
       n = 0
       if (.not. (a(1) > 0 .and. b(1) > 0)) return
-      n = spread_across(b, h)**flatness*b(2:4)/b(1) - spread_across(a, h)**flatness*a(2:4)/a(1)
-      if (norm2(n) > 0) n = n/norm2(n)
-   end function common_normal
+      s = [spread_across(a, h), spread_across(b, h)]
+      s = s/maxval(s)
+      n(:, 1) = b(2:4)/b(1) - a(2:4)/a(1)
+      n(:, 2) = s(2)**flatness*b(2:4)/b(1) - s(1)**flatness*a(2:4)/a(1)
+      if (minval(s) < alike) n(:, 1) = n(:, 2)
+      do k = 1, 2
+         n(:, k) = n(:, k)/max(norm2(n(:, k)), tiny(1.0_wp))
+      end do
+   end function common_normals
 
    !> Variance of a body's part across its own normal, over that of a shape function's whole.
    pure function spread_across(m, h) result(ratio)
@@ -171,15 +186,16 @@ contains
       ratio = max(ratio*3/h**2, 1e-3_wp)
    end function spread_across
 
-   !> Widen the extents along the normal by the particles of a bin: n.x + r of the first bodies,
+   !> Widen the extents along both normals by the particles of a bin: n.x + r of the first bodies,
    !> -n.x + r of the second ones.
-   subroutine widen(contact, p, half, sided, lattice, head, s, extent)
+   subroutine widen(contact, p, half, sided, lattice, head, s, normal, extent)
       type(contact_t), intent(in) :: contact
       type(particles_t), intent(in) :: p
       real(wp), intent(in) :: half(:)
       type(sided_t), intent(in) :: sided
       type(lattice_t), intent(in) :: lattice
       integer, intent(in) :: head, s
+      real(wp), intent(in) :: normal(:, :, :)
       real(wp), intent(inout) :: extent(:, :)
       real(wp) :: g(lanes), slope(lanes, 3), radius(lanes), reach
       integer :: c, i, j, row, set, side
@@ -198,7 +214,8 @@ contains
                   do side = 1, 2
                      if (contact%row(side, j) /= row) cycle
                      call widen_by_lanes(p%count(c), p%q(:, :, c), g, radius, contact%place(:, j), &
-                        reach, real(3 - 2*side, wp)*contact%normal(:, j), extent(side, j))
+                        reach, real(3 - 2*side, wp)*normal(:, :, j), &
+                        extent(2*side - 1:2*side, j))
                   end do
                end do
             end do
@@ -225,8 +242,9 @@ contains
    !> Largest n.(x - place) + r of the lanes within reach of the node.
    pure subroutine widen_by_lanes(n, q, g, radius, place, reach, direction, extent)
       integer, intent(in) :: n
-      real(wp), intent(in) :: q(lanes, 14), g(lanes), radius(lanes), place(3), reach, direction(3)
-      real(wp), intent(inout) :: extent
+      real(wp), intent(in) :: q(lanes, 14), g(lanes), radius(lanes), place(3), reach, &
+         direction(3, 2)
+      real(wp), intent(inout) :: extent(2)
       real(wp) :: d(3)
       integer :: i
 
@@ -234,7 +252,7 @@ contains
          if (.not. g(i) > 0) cycle
          d = q(i, c_x:c_x + 2) - place
          if (any(abs(d) >= reach)) cycle
-         extent = max(extent, dot_product(d, direction) + radius(i))
+         extent = max(extent, matmul(d, direction) + radius(i))
       end do
    end subroutine widen_by_lanes
 end module xmpm_contact_gap
