@@ -1,7 +1,7 @@
 """Bodies that meet: two elastic cubes head-on at any gap and time step, and a block that slides.
 
-The cubes must never hold more than 102 % of their first energy; momentum is exact. The block slides on a
-rigid table under its weight, v = v0 - mu g t.
+The cubes must never hold more than 102 % of their first energy; momentum is exact. The block
+slides on a rigid table under its weight, v = v0 - mu g t.
 """
 
 from collections.abc import Iterator
