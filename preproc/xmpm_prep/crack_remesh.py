@@ -324,18 +324,32 @@ def may_collapse(gone, kept, place, points, triangles, edges, short, longest):
 
 
 def apart(ends, short, length, n):
-    """Of short edges those that are the shortest up to two edges around."""
+    """Of short edges as many as have no other up to two edges around, the shortest first."""
+    chosen = np.zeros(len(short), dtype=bool)
     rank = np.empty(len(short))
     rank[np.argsort(length[short], kind="stable")] = np.arange(len(short))
-    least = np.full(n, np.inf)
-    for end in range(2):
-        np.minimum.at(least, ends[short, end], rank)
-    for _ in range(2):
-        spread = least.copy()
-        np.minimum.at(spread, ends[:, 0], least[ends[:, 1]])
-        np.minimum.at(spread, ends[:, 1], least[ends[:, 0]])
-        least = spread
-    return (rank == least[ends[short, 0]]) & (rank == least[ends[short, 1]])
+    free = np.ones(len(short), dtype=bool)
+    while free.any():
+        least = np.full(n, np.inf)
+        for end in range(2):
+            np.minimum.at(least, ends[short[free], end], rank[free])
+        least = spread_least(ends, spread_least(ends, least))
+        first, second = least[ends[short]].T
+        best = free & (rank == first) & (rank == second)
+        chosen |= best
+        near = np.ones(n)
+        near[ends[short[best]].ravel()] = 0.0
+        near = spread_least(ends, spread_least(ends, near))
+        free &= (near[ends[short]] > 0.0).all(axis=1)
+    return chosen
+
+
+def spread_least(ends, values):
+    """The least value at each vertex and those that an edge joins to it."""
+    spread = values.copy()
+    np.minimum.at(spread, ends[:, 0], values[ends[:, 1]])
+    np.minimum.at(spread, ends[:, 1], values[ends[:, 0]])
+    return spread
 
 
 def flip_all(points, triangles, lines):
