@@ -5,11 +5,12 @@ appears: what relaxes is the disturbance by the crack alone. The holding lowers 
 goes with the cube of radius over half-width; it is measured with a second, wider box and taken
 out. References: eq. 63-65 of 10.1002/nme.6653.
 
-Straight: a quarter of the block between two symmetry planes. Wanted are 1 % for the mean of K_I
+Straight: in tension, on a plane of the lattice. Wanted are 1 % for the mean of K_I
 and 2.5 % at every point. Inclined: the load 30 degrees off the crack's normal, five centres and
 directions, full blocks; wanted are 3 % for the amplitude of each mode and 2 % of K_0 for the rms
-of the difference along the front. The rules of the paper for the front stand beside,
-without a limit.
+of the difference along the front. The rules of the paper for the front and its contour stand
+beside, without a limit, and so does a quarter of the block between symmetry planes, at whose ends
+the domains are cut.
 """
 
 from collections.abc import Iterator
@@ -44,7 +45,7 @@ HEAD = """
 *RELAX    method = kinetic, residual = 1e-3, limit = @limit@
 *TIME     end = @limit@, steps = 0
 *OUTPUT   particles = none, crack = opening
-*FRACTURE at = 0, cracks = penny, radii = 3*h 4*h 5*h
+*FRACTURE at = 0, cracks = penny, methods = @method@, radii = 3*h 4*h 5*h
 """
 
 QUARTER = """
@@ -70,6 +71,7 @@ def make_deck(
     *,
     quarter: bool = True,
     rule: str = "graded",
+    method: str = "domain",
     centre: np.ndarray | tuple = (0.0, 0.0, 0.0),
     frame: np.ndarray = UPRIGHT,
     stress: np.ndarray | None = None,
@@ -92,14 +94,26 @@ def make_deck(
         radius=RADIUS,
         rule=rule,
         limit=100 * half / STEEL.c_d,
+        method=method,
         stress=voigt(stress),
     )
 
 
-def straight(cells: int, width: float, **options: str) -> tuple[Run, np.ndarray]:
-    """Run a quarter block; K_I along the front over its exact value."""
-    run = run_deck(make_deck(cells, width, **options))
+def straight(
+    cells: int, width: float, quarter: bool = False, **options: str
+) -> tuple[Run, np.ndarray]:
+    """Run a crack in tension; K_I along the front over its exact value."""
+    deck = make_deck(cells, width, quarter=quarter, **options)
+    run = run_deck(deck, ranks=2 if cells > 8 else 1)
     return run, read_front(run).k()[0] / K_0
+
+
+def two_rows(method: str, cells: int, run: Run, ratio: np.ndarray, limits: tuple) -> Iterator[Row]:
+    """Mean and worst point of K_I over its exact value."""
+    h = RADIUS / cells
+    yield Row.of("penny", method, h, run, "mean K_I / exact", ratio.mean(), 1.0, limits[0])
+    worst = ratio[np.argmax(np.abs(ratio - 1))]
+    yield Row.of("penny", method, h, run, "worst K_I / exact", worst, 1.0, limits[1])
 
 
 def inclined(number: int, cells: int, width: float) -> tuple[Run, np.ndarray, np.ndarray]:
@@ -119,20 +133,21 @@ def inclined(number: int, cells: int, width: float) -> tuple[Run, np.ndarray, np
 
 def straight_rows(box: float, full: bool) -> Iterator[Row]:
     """Tension: mean and worst point of K_I by size, with the box's effect taken out."""
-    for cells in (6, 9, 12, 16):
+    for cells in (6, 9, 12, 16) if full else (6, 9, 12):
         run, ratio = straight(cells, WIDTHS[0])
-        ratio = ratio / box
-        h = RADIUS / cells
-        yield Row.of("penny", "graded", h, run, "mean K_I / exact", ratio.mean(), 1.0, 0.01)
-        worst = ratio[np.argmax(np.abs(ratio - 1))]
-        yield Row.of("penny", "graded", h, run, "worst K_I / exact", worst, 1.0, 0.025)
+        yield from two_rows("graded", cells, run, ratio / box, (0.01, 0.025))
+    cheap = (6, 9, 12) if full else (6, 9)
+    for cells in cheap:
+        run, ratio = straight(cells, WIDTHS[0], quarter=True)
+        yield from two_rows("quarter", cells, run, ratio / box, (None, None))
     for rule in ("node", "full", "cut"):
-        for cells in (6, 9, 12) if full else (6, 9):
+        for cells in cheap:
             run, ratio = straight(cells, WIDTHS[0], rule=rule)
-            found, h = ratio / box, RADIUS / cells
-            yield Row.of("penny", rule, h, run, "mean K_I / exact", found.mean(), 1.0, None)
-            worst = found[np.argmax(np.abs(found - 1))]
-            yield Row.of("penny", rule, h, run, "worst K_I / exact", worst, 1.0, None)
+            yield from two_rows(rule, cells, run, ratio / box, (None, None))
+    for method in ("contour", "paper"):
+        for cells in cheap:
+            run, ratio = straight(cells, WIDTHS[0], method=method)
+            yield from two_rows(method, cells, run, ratio / box, (None, None))
 
 
 def inclined_rows(full: bool) -> Iterator[Row]:
