@@ -103,6 +103,12 @@ contains
          meaning='of a rigid body; from its volume and density where not given'))
       call add_key(t, key_t(name='held', kind=kind_text, most=3, &
          meaning='letters out of x y z in which a rigid body keeps its velocity, whatever acts'))
+      call add_relations(t)
+   end subroutine add_materials_and_bodies
+
+   !> What is said of bodies once they are there.
+   pure subroutine add_relations(t)
+      type(keyword_t), allocatable, intent(inout) :: t(:)
 
       call add_keyword(t, keyword_t(name='set', naming=must_have_name, repeatable=.true., &
          meaning='a named set of particles: those of a body in a box at the start'))
@@ -119,9 +125,8 @@ contains
          meaning='coefficient of Coulomb friction'))
       call add_key(t, key_t(name='normal', least=3, most=3, &
          meaning='of the faces that meet, from the body that stands first in the deck; found '// &
-         'where'// &
-         ' not given'))
-   end subroutine add_materials_and_bodies
+         'where not given'))
+   end subroutine add_relations
 
    !> The shapes of bodies, each with its twin that cuts the shape out.
    pure subroutine add_primitives(t)
