@@ -4,6 +4,10 @@ The error is the rms of the displacement's error over all particles, over the am
 quarters of a period. Wanted: order 1.8 for GIMP at an amplitude of 0.2 h and for linear functions
 at 1e-6 h. Linear functions at 0.2 h are shown with the order of about 1 that particles near cell
 faces leave them: their gradient jumps there.
+
+Recorded on 2026-11-22 at 1/16, 1/32, 1/64: GIMP, 0.2 h: 7.66e-3, 1.94e-3, 4.39e-4 (order 2.06 from
+the first to the last); linear, 1e-6 h: 1.05e-2, 2.78e-3, 7.00e-4 (1.96); linear, 0.2 h, 1/16 and
+1/32: 3.31e-2 and 1.32e-2 (1.33).
 """
 
 import math
