@@ -11,6 +11,7 @@ module xmpm_contact
    integer, parameter :: sweeps = 4            !! through the pairs, where a node has several
    real(wp), parameter :: slipping = 1e-9_wp   !! what friction may lack of its most when a pair
                                                !! slips
+   real(wp), parameter :: overlap = 1e-12_wp   !! likewise for the faces of a crack [cells]
    real(wp), parameter :: touching = 1e-3_wp   !! gap that counts as closed [cells]
 
 contains
@@ -55,7 +56,7 @@ contains
       integer, intent(in) :: i
       logical :: closed
 
-      closed = contact%gap(i) < touching*grid%lattice%size &
+      closed = contact%gap(i) < merge(touching, overlap, contact%crack(i) == 0)*grid%lattice%size &
          .and. all(grid%node(f_mass, contact%row(:, i)) > 0)
    end function is_closed
 
@@ -82,7 +83,7 @@ contains
       t = t/slip
       if (.not. dot_product(t*t, yield) > 0) return
       across = slip/dot_product(t*t, yield)
-      across = min(across, contact%friction(contact%group(1, i), contact%group(2, i))*normal)
+      across = min(across, contact%mu(i)*normal)
       impulse = impulse - across*t
    end subroutine impulse_between
 
@@ -118,8 +119,7 @@ contains
 
       normal = dot_product(contact%impulse(:, i), contact%normal(:, i))
       across = contact%impulse(:, i) - normal*contact%normal(:, i)
-      holds = norm2(across) < (1 - slipping)*normal*contact%friction(contact%group(1, i), &
-         contact%group(2, i))
+      holds = norm2(across) < (1 - slipping)*normal*contact%mu(i)
    end function sticks
 
    !> Change of the difference of the velocities by an impulse: both inverse masses, 0 where held.

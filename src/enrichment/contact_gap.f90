@@ -18,7 +18,7 @@ module xmpm_contact_gap
    use xmpm_halo, only: start_sum, finish_sum, take_largest
    use xmpm_lattice, only: lattice_t, bins_per_block, bin_corner, gimp_shape
    use xmpm_grid, only: grid_t
-   use xmpm_storage, only: particles_t, lanes, bin_of_chunk, c_x, c_vol
+   use xmpm_storage, only: particles_t, lanes, bin_of_chunk, c_x, c_m, c_vol
    use xmpm_linear_kernels, only: weights_linear
    use xmpm_gimp_kernels, only: weights_gimp
    use xmpm_sided, only: sided_t, side_weights
@@ -53,6 +53,8 @@ contains
       call start_sum(contact%halo, comm, moment, 1, 20)
       call finish_sum(contact%halo, moment, 1, 20)
       do i = 1, contact%n
+         normal(:, :, i) = spread(contact%normal(:, i), 2, 2)
+         if (contact%crack(i) > 0) cycle
          normal(:, :, i) = spread(contact%given_normal(:, contact%group(1, i), &
             contact%group(2, i)), 2, 2)
          if (any(abs(normal(:, :, i)) > 0)) cycle
@@ -66,6 +68,10 @@ contains
       call take_largest(contact%halo, comm, extent)
       do i = 1, contact%n
          contact%gap(i) = huge(1.0_wp)
+         if (contact%crack(i) > 0) then
+            contact%gap(i) = face_gap(moment(:10, i), moment(11:, i), contact%normal(:, i))
+            cycle
+         end if
          contact%normal(:, i) = 0
          if (.not. (moment(1, i) > 0 .and. moment(11, i) > 0)) cycle
          if (.not. any(abs(normal(:, 1, i)) > 0)) cycle
@@ -127,7 +133,8 @@ contains
                end if
                w = w*g(i)*p%q(i, c_vol, c)
                do k = 1, size(w)
-                  call add_particle(contact, sided%rows(k, set, s), x, w(k), moment)
+                  call add_particle(contact, sided%rows(k, set, s), x, x - p%x0(i, :, c), w(k), &
+                     p%q(i, c_m, c)/p%q(i, c_vol, c), moment)
                end do
             end do
             c = p%next(c)
@@ -135,11 +142,24 @@ contains
       end do
    end subroutine add_moments
 
-   !> Add the moments of one particle to the pairs of a row.
-   pure subroutine add_particle(contact, row, x, w, moment)
+   !> Gap of the faces of a crack: the difference of their mass-weighted displacements.
+   pure function face_gap(minus, plus, n) result(gap)
+      real(wp), intent(in) :: minus(10), plus(10), n(3)
+      real(wp) :: gap
+
+      gap = huge(1.0_wp)
+      if (minus(1) > 0 .and. plus(1) > 0) then
+         gap = dot_product(plus(2:4)/plus(1) - minus(2:4)/minus(1), n)
+      end if
+   end function face_gap
+
+   !> Add the moments of one particle to the pairs of a row; for the faces of a crack the
+   !> displacement
+   !> stands for the place, and the mass for the volume.
+   pure subroutine add_particle(contact, row, x, u, w, density, moment)
       type(contact_t), intent(in) :: contact
       integer, intent(in) :: row
-      real(wp), intent(in) :: x(3), w
+      real(wp), intent(in) :: x(3), u(3), w, density
       real(wp), intent(inout) :: moment(:, :)
       real(wp) :: d(3)
       integer :: j, k
@@ -148,6 +168,10 @@ contains
          if (all(contact%row(:, j) /= row)) cycle
          d = x - contact%place(:, j)
          k = merge(0, 10, contact%row(1, j) == row)
+         if (contact%crack(j) > 0) then
+            moment(k + 1:k + 4, j) = moment(k + 1:k + 4, j) + w*density*[1.0_wp, u]
+            cycle
+         end if
          moment(k + 1:k + 10, j) = moment(k + 1:k + 10, j) + w*[1.0_wp, d, d*d, d*cshift(d, 1)]
       end do
    end subroutine add_particle
@@ -212,7 +236,7 @@ contains
                row = sided%rows(i, set, s)
                do j = contact%first(row), contact%first(row) + contact%many(row) - 1
                   do side = 1, 2
-                     if (contact%row(side, j) /= row) cycle
+                     if (contact%row(side, j) /= row .or. contact%crack(j) > 0) cycle
                      call widen_by_lanes(p%count(c), p%q(:, :, c), g, radius, contact%place(:, j), &
                         reach, real(3 - 2*side, wp)*normal(:, :, j), &
                         extent(2*side - 1:2*side, j))

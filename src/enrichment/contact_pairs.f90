@@ -1,9 +1,12 @@
-!> Where bodies of different contact groups meet: pairs of rows of one node.
+!> Where bodies of different contact groups, or the faces of a crack, meet: pairs of rows of one
+!> node.
 module xmpm_contact_pairs
    use xmpm_kinds, only: wp
    use xmpm_halo, only: halo_t, make_halo
    use xmpm_grid, only: grid_t, node_position
    use xmpm_sharing, only: sharing_t
+   use xmpm_surface_index, only: nearest_t, nearest_on_surface
+   use xmpm_crack, only: crack_t
    use xmpm_split, only: split_t, row_of_sides, sides_of_group
    implicit none
    private
@@ -18,10 +21,17 @@ module xmpm_contact_pairs
                                                       !! be found
       real(wp), allocatable :: spacing(:)             !! (bodies) of particles, 0 where not known
                                                       !! [length]
-      integer, allocatable :: rigid(:)                !! (0:) rigid body of the group, 0 for none
+      integer, allocatable :: rigid(:)                !! (-1:) rigid body of the group, 0 for none
+      real(wp), allocatable :: face_friction(:)       !! (cracks) between its faces, less than 0
+                                                      !! where
+                                                      !! these do not meet
       integer :: n = 0                                !! pairs of this rank
       integer, allocatable :: row(:, :)               !! (2,n) rows, lower group first
-      integer, allocatable :: group(:, :)             !! (2,n) their groups
+      integer, allocatable :: group(:, :)             !! (2,n) their groups, -1 for faces of a crack
+      integer, allocatable :: crack(:)                !! (n) crack whose minus and plus face they
+                                                      !! are, 0
+                                                      !! for bodies
+      real(wp), allocatable :: mu(:)                  !! (n) coefficient of friction
       integer, allocatable :: first(:)                !! (rows) first pair of the row's node
       integer, allocatable :: many(:)                 !! (rows) pairs of the node, 0 for most
       real(wp), allocatable :: place(:, :)            !! (3,n) of the node [length]
@@ -38,8 +48,9 @@ module xmpm_contact_pairs
 contains
 
    !> List the pairs of all nodes that several groups reach.
-   subroutine list_pairs(contact, split, grid, sharing, rank)
+   subroutine list_pairs(contact, cracks, split, grid, sharing, rank)
       type(contact_t), intent(inout) :: contact   !! groups are given
+      type(crack_t), intent(in) :: cracks(:)
       type(split_t), intent(in) :: split
       type(grid_t), intent(in) :: grid            !! with the rows of split nodes
       type(sharing_t), intent(in) :: sharing      !! shared rows of ordinary nodes
@@ -48,37 +59,52 @@ contains
 
       n = 0
       do s = 1, split%n
-         if (any(split%crack(:split%n_cracks(s), s) < 0)) n = n + pairs_at(split, s)
+         n = n + pairs_at(contact, split, s)
       end do
       call make_room(contact, n, grid%n_rows)
       do s = 1, split%n
-         if (any(split%crack(:split%n_cracks(s), s) < 0)) call add_node(contact, split, grid, s)
+         call add_node(contact, cracks, split, grid, s)
       end do
       call share_pairs(contact, split, sharing, rank)
    end subroutine list_pairs
 
    !> Pairs that a node may have.
-   pure function pairs_at(split, s) result(n)
+   pure function pairs_at(contact, split, s) result(n)
+      type(contact_t), intent(in) :: contact
       type(split_t), intent(in) :: split
       integer, intent(in) :: s
-      integer :: n, groups, sets
+      integer :: n, groups, sets, k
 
-      groups = popcnt(split%groups(split%row(s)))
+      groups = 1
+      if (size(split%groups) > 0) groups = popcnt(split%groups(split%row(s)))
       sets = 2**count(split%crack(:split%n_cracks(s), s) > 0)
-      n = sets**2*groups*(groups - 1)/2
+      n = sets**2*groups*(groups - 1)/2 + 2**(split%n_cracks(s) - 1) &
+         *count([(meets_itself(contact, split%crack(k, s)), k=1, split%n_cracks(s))])
    end function pairs_at
+
+   !> Whether the faces of a crack meet each other; not so for a contact group.
+   pure function meets_itself(contact, crack) result(meets)
+      type(contact_t), intent(in) :: contact
+      integer, intent(in) :: crack
+      logical :: meets
+
+      meets = .false.
+      if (crack > 0) meets = contact%face_friction(crack) >= 0
+   end function meets_itself
 
    subroutine make_room(contact, n, n_rows)
       type(contact_t), intent(inout) :: contact
       integer, intent(in) :: n, n_rows
 
       if (allocated(contact%row)) then
-         deallocate (contact%row, contact%group, contact%first, contact%many, contact%place, &
+         deallocate (contact%crack, contact%mu, contact%row, contact%group, contact%first, &
+            contact%many, contact%place, &
             contact%normal, contact%gap, contact%impulse, contact%held, &
             contact%prescribed)
       end if
       contact%n = 0
-      allocate (contact%row(2, n), contact%group(2, n), contact%normal(3, n))
+      allocate (contact%crack(n), contact%mu(n), contact%row(2, n), contact%group(2, n), &
+         contact%normal(3, n))
       allocate (contact%gap(n), contact%place(3, n))
       allocate (contact%impulse(3, n), source=0.0_wp)
       allocate (contact%held(3, 2, n), contact%prescribed(3, 2, n))
@@ -86,15 +112,17 @@ contains
    end subroutine make_room
 
    !> Add the pairs of a node: every row of a group with every row of each higher group.
-   subroutine add_node(contact, split, grid, s)
+   subroutine add_node(contact, cracks, split, grid, s)
       type(contact_t), intent(inout) :: contact
+      type(crack_t), intent(in) :: cracks(:)
       type(split_t), intent(in) :: split
       type(grid_t), intent(in) :: grid
       integer, intent(in) :: s
       integer, allocatable :: low(:), high(:)
       integer :: g, h, i, j, bits, before
 
-      bits = split%groups(split%row(s))
+      bits = 0
+      if (size(split%groups) > 0) bits = split%groups(split%row(s))
       before = contact%n
       do g = 0, contact%n_groups - 2
          if (.not. btest(bits, g)) cycle
@@ -108,9 +136,15 @@ contains
                   contact%row(1, contact%n) = row_of_sides(split, s, low(i))
                   contact%row(2, contact%n) = row_of_sides(split, s, high(j))
                   contact%group(:, contact%n) = [g, h]
+                  contact%crack(contact%n) = 0
+                  contact%mu(contact%n) = contact%friction(g, h)
                end do
             end do
          end do
+      end do
+      do i = 1, split%n_cracks(s)
+         if (meets_itself(contact, split%crack(i, s))) call add_faces(contact, cracks, split, &
+            grid, s, i)
       end do
       do i = before + 1, contact%n
          contact%first(contact%row(:, i)) = before + 1
@@ -118,6 +152,34 @@ contains
          contact%place(:, i) = node_position(grid, split%row(s))
       end do
    end subroutine add_node
+
+   !> Add the pairs of a node for the faces of one of its cracks, with the normal of the surface.
+   subroutine add_faces(contact, cracks, split, grid, s, i)
+      type(contact_t), intent(inout) :: contact
+      type(crack_t), intent(in) :: cracks(:)
+      type(split_t), intent(in) :: split
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: s, i   !! split node, number of the crack at the node
+      type(nearest_t) :: nearest
+      integer :: sides, k
+
+      k = split%crack(i, s)
+      associate (crack => cracks(k))
+         call nearest_on_surface(crack%index, crack%surface, node_position(grid, split%row(s)), &
+            8*grid%lattice%size, nearest, 0)
+         if (nearest%triangle == 0) return
+         do sides = 0, 2**split%n_cracks(s) - 1
+            if (btest(sides, i - 1)) cycle
+            contact%n = contact%n + 1
+            contact%row(1, contact%n) = row_of_sides(split, s, sides)
+            contact%row(2, contact%n) = row_of_sides(split, s, ibset(sides, i - 1))
+            contact%group(:, contact%n) = -1
+            contact%crack(contact%n) = k
+            contact%mu(contact%n) = contact%face_friction(k)
+            contact%normal(:, contact%n) = crack%surface%normal(:, nearest%triangle)
+         end do
+      end associate
+   end subroutine add_faces
 
    !> The halo of the pairs: nodes in the order of the shared rows, pairs as they were added.
    subroutine share_pairs(contact, split, sharing, rank)

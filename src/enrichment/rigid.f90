@@ -160,7 +160,7 @@ contains
                slope(:, k) = mass*n*n(k)
             end do
             if (norm2(impulse - normal*n) < (1 - 1e-9_wp)*normal &
-                *contact%friction(contact%group(1, i), contact%group(2, i))) then
+                *contact%mu(i)) then
                slope = 0
                do k = 1, 3
                   slope(k, k) = mass

@@ -25,6 +25,13 @@ contains
       type(string_t), allocatable :: keys(:)
       integer :: i
 
+      if (text_of(block, 'contact') == 'friction') then
+         if (.not. has(block, 'friction')) then
+            call complain(deck, block, 'contact', "contact with friction needs 'friction'")
+         end if
+      else
+         call refuse(deck, block, 'friction', 'it belongs to contact = friction')
+      end if
       call exactly_one(deck, block, shapes, shape)
       if (len(shape) == 0) return
       needed = needed_keys(shape)

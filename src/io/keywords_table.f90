@@ -192,6 +192,11 @@ contains
          meaning='graded front: length over which the weight falls from 1 to 0, in cells'))
       call add_key(t, key_t(name='ramp_end', range='[-4, 4]', default='0.4', &
          meaning='graded front: distance ahead of the front at which the weight is 0, in cells'))
+      call add_key(t, key_t(name='contact', kind=kind_word, default='none', &
+         words='none frictionless friction', &
+         meaning='contact of the faces with each other, where they are closed'))
+      call add_key(t, key_t(name='friction', range=not_negative, &
+         meaning='coefficient of Coulomb friction of the faces; for contact = friction'))
    end subroutine add_cracks
 
    pure subroutine add_loads(t)

@@ -251,7 +251,7 @@ contains
       end do
       m%split_again = .false.
       if (.not. m%bodies_meet) return
-      call list_pairs(m%contact, split, m%grid, m%sharing, m%comm%rank)
+      call list_pairs(m%contact, m%cracks, split, m%grid, m%sharing, m%comm%rank)
       call list_rigid_rows(m%rigid, split)
    end subroutine renew_splits
 

@@ -42,13 +42,31 @@ contains
       call read_meetings(deck, n, meeting)
       call number_groups(meeting, rigid, group)
       m%bodies_meet = count_blocks(deck, 'contact') > 0 .or. any(rigid)
+      call read_faces(m, deck)
       if (m%bodies_meet) then
          call check_groups(deck, meeting, rigid, group)
          m%particles%group = group
       end if
+      m%bodies_meet = m%bodies_meet .or. any(m%contact%face_friction >= 0)
       call keep_groups(m, meeting, group)
       call read_rigid(m, deck, rigid, group)
    end subroutine read_contact
+
+   !> Contact of the cracks' own faces.
+   subroutine read_faces(m, deck)
+      type(model_t), intent(inout) :: m
+      type(deck_t), intent(in) :: deck
+      type(block_t) :: block
+      integer :: k
+
+      allocate (m%contact%face_friction(count_blocks(deck, 'crack')), source=-1.0_wp)
+      do k = 1, size(m%contact%face_friction)
+         block = find_block(deck, 'crack', k)
+         if (lower(text_of(block, 'contact')) == 'none') cycle
+         m%contact%face_friction(k) = 0
+         if (has(block, 'friction')) m%contact%face_friction(k) = real_of(block, 'friction')
+      end do
+   end subroutine read_faces
 
    !> Which bodies meet, with what friction.
    subroutine read_meetings(deck, n, meeting)
@@ -152,7 +170,7 @@ contains
       n = maxval(group)
       m%contact%n_groups = n + 1
       allocate (m%contact%friction(0:n, 0:n), m%contact%given_normal(3, 0:n, 0:n), source=0.0_wp)
-      allocate (m%contact%rigid(0:n), source=0)
+      allocate (m%contact%rigid(-1:n), source=0)
       do i = 1, size(group)
          do j = 1, size(group)
             if (group(i) == group(j) .or. .not. meeting%meet(i, j)) cycle
@@ -223,8 +241,8 @@ contains
       type(block_t) :: block
       integer :: i, j
 
-      if (.not. m%bodies_meet) return
       m%contact%spacing = [(merge(0.0_wp, plans(i)%spacing, plans(i)%from_file), i=1, size(plans))]
+      if (.not. allocated(m%particles%group)) return
       do i = 1, size(plans)
          block = find_block(deck, 'body', i)
          if (has(block, 'mass')) call scale_mass(m, i, real_of(block, 'mass'))

@@ -27,6 +27,7 @@ program test_contact
    call test_cubes('gimp', 1.3_wp, 0.5_wp)
    call test_rigid
    call test_friction
+   call test_faces
    call test_messages
    call finish(suite)
    call stop_parallel(comm, 0)
@@ -156,6 +157,46 @@ contains
       call check(suite, 'the ledger knows the friction', abs(balance%relative_error) < 0.01_wp)
    end subroutine test_friction
 
+   !> The faces of a crack: nothing changes in tension, compression keeps them shut.
+   subroutine test_faces
+      real(wp) :: free(2), met(2), shut(2), open (2)
+
+      call pull('1 contact=none', free)
+      call pull('1 contact=frictionless', met)
+      call pull('-1 contact=none', open)
+      call pull('-1 contact=frictionless', shut)
+      call check(suite, 'the crack opens in tension', free(1) > 1e-3_wp)
+      call check_close(suite, 'contact of the faces changes nothing in tension', met(1), free(1), &
+         0.0_wp, 1e-6_wp)
+      call check(suite, 'without contact the faces pass each other', open (2) < -1e-3_wp)
+      ! At most a thousandth of a cell is the target; 2.6e-4 measured in this undamped shock.
+      call check_close(suite, 'with contact they do not', shut(2), 0.0_wp, 1e-3_wp, 0.0_wp)
+   end subroutine test_faces
+
+   !> Largest and least opening of a plate under a stress of some sign.
+   subroutine pull(how, opening)
+      character(len=*), intent(in) :: how   !! sign of the stress, and the crack's contact
+      real(wp), intent(out) :: opening(2)   !! [length]
+      type(model_t) :: m
+      integer :: i, blank
+
+      blank = index(how, ' ')
+      call build(head//'*GRID size=1|*TIME end=1|*BODY plate material=soft box=-5 -5 -1 5 5 1|' &
+         //'*CRACK slit rectangle centre=0.1 0.2 0 along=1 0 0 across=0 0 -1 width=5 depth=4 ' &
+         //how(blank:)//'|*LOAD face=plate:+y traction=0 1*'//how(:blank - 1)//' 0|' &
+         //'*LOAD face=plate:-y traction=0 -1*'//how(:blank - 1)//' 0', 'faces '//how//': ', m)
+      do i = 1, 60
+         call one_step(m)
+      end do
+      associate (s => m%cracks(1)%surface)
+         opening = [maxval(s%up(2, :) - s%um(2, :), mask=m%cracks(1)%mine), &
+            -maxval(s%um(2, :) - s%up(2, :), mask=m%cracks(1)%mine)]
+      end associate
+      opening(2) = -opening(2)
+      call max_all(comm, opening)
+      opening(2) = -opening(2)
+   end subroutine pull
+
    subroutine test_messages
       character(len=*), parameter :: bodies = '*GRID size=1|*TIME end=1|' &
          //'*BODY beam material=soft box=0 0 0 4 2 2|'
@@ -163,6 +204,8 @@ contains
       call refused(bodies//'*BODY ball material=soft sphere=2 2.5 1 1|*CONTACT bodies=beam ball', &
          'stands in the body')
       call refused(bodies//'*CONTACT bodies=beam baem', "did you mean 'beam'")
+      call refused(bodies//'*CRACK c disc centre=1 1 1 along=1 0 0 across=0 1 0 radius=1 ' &
+         //'contact=friction', "needs 'friction'")
       call refused(bodies//'*CONTACT bodies=beam', 'two bodies at least')
       call refused(bodies//'*CONTACT bodies=beam beam', 'named twice')
       call refused(bodies//'*BODY ball material=soft sphere=2 4 1 1 rigid', 'in a *CONTACT')
