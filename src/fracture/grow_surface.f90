@@ -274,7 +274,34 @@ contains
          inside(i) = has_material_ahead(surface, e, h, material)
       end do
       call mark_front(surface, inside, front)
+      call drop_rests(surface, material, inside, front)
    end subroutine find_front
+
+   !> Chains without a node in the material are done: what is left ahead of them is less than a
+   !> segment, and the ramp has reached it.
+   subroutine drop_rests(surface, material, inside, front)
+      type(surface_t), intent(in) :: surface
+      class(material_test_t), intent(in) :: material
+      logical, intent(inout) :: inside(:)
+      type(front_t), intent(inout) :: front
+      logical :: keep(surface%edge_count), any_inside
+      integer :: c, i, k
+
+      keep = .false.
+      do c = 1, front%chain_count
+         any_inside = .false.
+         do i = front%chain_offset(c), front%chain_offset(c + 1) - 1
+            any_inside = any_inside .or. material%inside(front%x(:, i))
+         end do
+         do i = front%chain_offset(c), front%chain_offset(c + 1) - 1
+            k = front%node_edge(2, i)
+            if (k > 0) keep(front%surface_edge(k)) = any_inside
+         end do
+      end do
+      if (count(keep) == count(inside)) return
+      inside = inside .and. keep(surface%boundary)
+      call mark_front(surface, inside, front)
+   end subroutine drop_rests
 
    pure function pair_key(pair) result(key)
       integer, intent(in) :: pair(2)

@@ -61,6 +61,8 @@ contains
             from = nearest_known(values%points%x, iand(values%flags, flag_leaves) == 0, i)
             k(:, i) = 0
             rate(i) = 0
+            ! Where no domain of the front fits, the last part of a section, its own K must do.
+            if (from == 0 .and. values%j(i) > 0) from = i
             if (from == 0) cycle
             k(:, i) = values%k(:, from)
             rate(i) = max(0.0_wp, values%j(from))
