@@ -163,6 +163,7 @@ contains
          n = last - first + 1
          do i = first, last
             if (.not. growth%outside(i)) cycle
+            other = 0
             do k = 1, n - 1
                other = i + k
                if (front%closed(c) .and. other > last) other = other - n
@@ -176,7 +177,7 @@ contains
                end if
                other = 0
             end do
-            if (n == 1 .or. other == 0) cycle
+            if (other == 0) cycle
             way(i) = way(other)
             growth%kink(i) = growth%kink(other)
          end do
