@@ -14,7 +14,7 @@ module xmpm_domain_integral
    use xmpm_kinds, only: wp, pi
    use xmpm_front, only: front_t
    use xmpm_samples, only: sample_t
-   use xmpm_front_points, only: front_points_t, window_at
+   use xmpm_front_points, only: front_points_t, window_at, direction_at, same_part
    use xmpm_near_tip, only: near_tip_fields, line_force_field, strain_of
    implicit none
    private
@@ -70,6 +70,7 @@ contains
          call points_near(front, points, samples(i), shape%reach, near, n)
          do k = 1, n
             m = near(k)
+            if (.not. same_part(front, points, m, samples(i)%edge)) cycle
             call add_sample(samples(i), points, m, shape, speed(m), drift(:, m), sums)
          end do
       end do
@@ -111,19 +112,25 @@ contains
       type(domain_shape_t), intent(in) :: shape
       real(wp), intent(in) :: speed, drift(3)
       type(domain_sums_t), intent(inout) :: sums
-      real(wp) :: flux(3, 5), source(5), across(5), value(5), d(3), l, dl, w, dw
+      real(wp) :: flux(3, 5), source(5), across(5), tilt(5), value(5), d(3), g(3)
+      real(wp) :: l, dl, w, dw, fade
       integer :: k
 
       d = matmul(s%x - points%x(:, m), points%frame(:, :, m))
       if (abs(d(3)) >= shape%half_width) return
       call window_at(d(3), shape%half_width, l, dl)
-      call fluxes(s, points%frame(:, :, m), points%turn(:, :, m), d, flux, source)
-      if (speed > 0) call add_kinetic(s, points%frame(:, 1, m), drift, flux(1, 1), source(1))
+      call direction_at(points, m, s%x, shape%half_width, g, fade)
+      tilt = 0
+      if (abs(fade) > 0) then
+         call fluxes(s, points, m, d, points%outward(:, m), speed, drift, flux, source)
+         tilt = fade*matmul(points%outward(:, m), flux)
+      end if
+      call fluxes(s, points, m, d, g, speed, drift, flux, source)
       across = matmul(matmul(s%away, points%frame(:, :, m)), flux)
       do k = size(shape%radius), 1, -1
          if (s%r >= shape%radius(k)) exit
          call profile(s%r, shape%inner, shape%radius(k), w, dw)
-         value = s%volume*(dw*l*across + w*dl*flux(3, :)) + w*l*source
+         value = s%volume*(dw*l*across + w*dl*flux(3, :) + w*l*tilt) + w*l*source
          sums%j(k, m) = sums%j(k, m) + value(1)
          sums%interaction(:, k, m) = sums%interaction(:, k, m) + value(2:)
          sums%volume(k, m) = sums%volume(k, m) + s%volume*w*l
@@ -151,44 +158,49 @@ contains
    end function strain_along
 
    !> Flux and source of J (1), of the interaction with modes I to III (2:4) and with a line force
-   !> (5), in the frame.
-   pure subroutine fluxes(s, e, turn, d, flux, source)
+   !> (5), in the frame, for a direction of q without a part along e2.
+   pure subroutine fluxes(s, points, m, d, g, speed, drift, flux, source)
       type(sample_t), intent(in) :: s
-      real(wp), intent(in) :: e(3, 3), turn(3, 3)   !! frame, turn of the material
+      type(front_points_t), intent(in) :: points
+      integer, intent(in) :: m                      !! point
       real(wp), intent(in) :: d(3)                  !! place in the frame [length]
+      real(wp), intent(in) :: g(3)                  !! direction in the frame
+      real(wp), intent(in) :: speed, drift(3)       !! of the front, of the material [length/time]
       real(wp), intent(out) :: flux(3, 5)           !! [stress], interaction [stress/K]
       real(wp), intent(out) :: source(5)            !! [force], interaction [force/K]
-      real(wp) :: t(3, 3), h(3), f(3), unit_stress(6, 4), slope(3, 4), poisson, energy
+      real(wp) :: e(3, 3), t(3, 3), h(3), f(3), unit_stress(6, 4), slope(3, 4), poisson, energy
       integer :: k
 
+      e = points%frame(:, :, m)
       t = matmul(transpose(e), matmul(full(s%stress), e))
-      h = matmul(e(:, 1) - matmul(turn, matmul(s%back, e(:, 1))), e)
+      h = g - matmul(matmul(points%turn(:, :, m), matmul(s%back, matmul(e, g))), e)
       f = matmul(s%pull, e)
-      flux(:, 1) = matmul(t, h)
-      flux(1, 1) = flux(1, 1) - s%work
+      flux(:, 1) = matmul(t, h) - s%work*g
       source(1) = dot_product(f, h)
+      if (speed > 0) call add_kinetic(s, matmul(e, g), g, drift, flux(:, 1), source(1))
       poisson = 0.5_wp*s%lambda/(s%lambda + s%mu)
       call near_tip_fields(d(1), d(2), s%side, s%mu, poisson, unit_stress(:, :3), slope(:, :3))
       call line_force_field(d(1), d(2), s%mu, poisson, unit_stress(:, 4), slope(:, 4))
       do k = 1, 4
          energy = product_of(t, strain_of(unit_stress(:, k), s%mu, poisson))
-         flux(:, k + 1) = matmul(t, slope(:, k)) + matmul(full(unit_stress(:, k)), h)
-         flux(1, k + 1) = flux(1, k + 1) - energy
-         source(k + 1) = dot_product(f, slope(:, k))
+         flux(:, k + 1) = g(1)*matmul(t, slope(:, k)) + matmul(full(unit_stress(:, k)), h) &
+            - energy*g
+         source(k + 1) = g(1)*dot_product(f, slope(:, k))
       end do
    end subroutine fluxes
 
    !> Kinetic energy of a moving front: velocity relative to the material at the front.
-   pure subroutine add_kinetic(s, e1, drift, flux, source)
+   pure subroutine add_kinetic(s, along, g, drift, flux, source)
       type(sample_t), intent(in) :: s
-      real(wp), intent(in) :: e1(3), drift(3)
-      real(wp), intent(inout) :: flux     !! along e1 [stress]
-      real(wp), intent(inout) :: source   !! [force]
+      real(wp), intent(in) :: along(3), g(3)   !! direction of q in space, in the frame
+      real(wp), intent(in) :: drift(3)
+      real(wp), intent(inout) :: flux(3)       !! [stress]
+      real(wp), intent(inout) :: source        !! [force]
       real(wp) :: v(3)
 
       v = s%v - drift
-      flux = flux - 0.5_wp*s%density*sum(v*v)
-      source = source - s%volume*s%density*dot_product(v, matmul(s%rate, e1))
+      flux = flux - 0.5_wp*s%density*sum(v*v)*g
+      source = source - s%volume*s%density*dot_product(v, matmul(s%rate, along))
    end subroutine add_kinetic
 
    !> w and dw/dr: 1 up to the inner radius, then a cosine to 0.

@@ -9,7 +9,11 @@ module xmpm_front_points
    implicit none
    private
 
-   public :: front_points_t, list_points, end_points, window_at, window_length
+   public :: front_points_t, list_points, end_points, window_at, window_length, direction_at
+   public :: same_part
+
+   real(wp), parameter :: turned = 0.17_wp   !! cosine (80 degrees) from which on a part of a front
+                                             !! is another one
 
    !> All points of the fronts of one crack, chain after chain along e3.
    type :: front_points_t
@@ -21,6 +25,10 @@ module xmpm_front_points
       real(wp), allocatable :: frame(:, :, :)   !! (3,3,n) columns e1 ahead, e2 normal, e3 along
       real(wp), allocatable :: turn(:, :, :)    !! (3,3,n) rotation of the material since the start
       logical, allocatable :: at_end(:)         !! (n) last point of an open front
+      real(wp), allocatable :: bend(:)          !! (n) radius of curvature [length]
+      real(wp), allocatable :: stop(:, :)       !! (3,n) nearest end of an open front [length]
+      real(wp), allocatable :: outward(:, :)    !! (3,n) normal of the plane in which it ends, in
+                                                !! the point's frame; 0 where no end is
       real(wp), allocatable :: beyond(:, :)     !! (2,chains) how far the material goes on past the
                                                 !! first and last node, negative where it ends
                                                 !! before them [length]
@@ -41,6 +49,8 @@ contains
          points%s = f%s
          allocate (points%chain(points%n), points%at_end(points%n))
          allocate (points%frame(3, 3, points%n), points%turn(3, 3, points%n))
+         allocate (points%bend(points%n))
+         allocate (points%stop(3, points%n), points%outward(3, points%n), source=0.0_wp)
          allocate (points%beyond(2, f%chain_count), source=0.0_wp)
          points%frame(:, 1, :) = f%e1
          points%frame(:, 2, :) = f%e2
@@ -54,7 +64,24 @@ contains
          end do
       end associate
       call find_turns(crack, points)
+      call find_bends(crack%front, points)
    end subroutine list_points
+
+   !> Radii of curvature from the neighbours of each point.
+   pure subroutine find_bends(front, points)
+      type(front_t), intent(in) :: front
+      type(front_points_t), intent(inout) :: points
+      integer :: i, a, b
+
+      do i = 1, points%n
+         a = i
+         b = i
+         if (front%node_edge(1, i) > 0) a = front%edge_node(1, front%node_edge(1, i))
+         if (front%node_edge(2, i) > 0) b = front%edge_node(2, front%node_edge(2, i))
+         points%bend(i) = norm2(front%x(:, b) - front%x(:, a)) &
+            /max(norm2(front%e1(:, b) - front%e1(:, a)), 1e-12_wp)
+      end do
+   end subroutine find_bends
 
    !> Rotation of each frame from where its vertices started.
    subroutine find_turns(crack, points)
@@ -90,8 +117,60 @@ contains
          last = front%chain_offset(c + 1) - 1
          call pull_back(front, points, first, first + 1, 1.0_wp, points%beyond(1, c))
          call pull_back(front, points, last, last - 1, -1.0_wp, points%beyond(2, c))
+         call face_ends(points, first, last)
       end do
    end subroutine end_points
+
+   !> Give each point of a chain its nearest end, and the plane normal to the front there.
+   pure subroutine face_ends(points, first, last)
+      type(front_points_t), intent(inout) :: points
+      integer, intent(in) :: first, last
+      real(wp) :: n(3)
+      integer :: i, end
+
+      do i = first, last
+         end = first
+         if (norm2(points%x(:, last) - points%x(:, i)) &
+             < norm2(points%x(:, first) - points%x(:, i))) end = last
+         n = merge(1.0_wp, -1.0_wp, end == last)*points%frame(:, 3, end)
+         n = matmul(n, points%frame(:, :, i))
+         n(2) = 0
+         points%stop(:, i) = points%x(:, end)
+         points%outward(:, i) = unit_vector(n)
+      end do
+   end subroutine face_ends
+
+   !> Direction of q in the frame of a point: e1, but tangent to the plane in which the front ends
+   !> near it, fading over a depth.
+   pure subroutine direction_at(points, i, x, depth, direction, fade)
+      type(front_points_t), intent(in) :: points
+      integer, intent(in) :: i               !! point
+      real(wp), intent(in) :: x(3)           !! place [length]
+      real(wp), intent(in) :: depth          !! [length]
+      real(wp), intent(out) :: direction(3)  !! e1 - eta (e1 . n) n
+      real(wp), intent(out) :: fade          !! -(e1 . n) d eta/dn, 0 beyond the depth [1/length]
+      real(wp) :: below
+
+      direction = [1.0_wp, 0.0_wp, 0.0_wp]
+      fade = 0
+      associate (n => points%outward(:, i))
+         if (.not. abs(n(1)) > 1e-9_wp) return
+         below = dot_product(matmul(points%stop(:, i) - x, points%frame(:, :, i)), n)
+         if (below >= depth) return
+         direction = direction - (1 - below/depth)*n(1)*n
+         fade = -n(1)/depth
+      end associate
+   end subroutine direction_at
+
+   !> Whether an edge of the front belongs to the part that a point looks at.
+   pure function same_part(front, points, i, edge) result(same)
+      type(front_t), intent(in) :: front
+      type(front_points_t), intent(in) :: points
+      integer, intent(in) :: i, edge
+      logical :: same
+
+      same = dot_product(points%frame(:, 1, i), front%edge_e1(:, edge)) > turned
+   end function same_part
 
    pure subroutine pull_back(front, points, node, inner, way, beyond)
       type(front_t), intent(in) :: front
@@ -136,12 +215,38 @@ contains
       length = 0
       do k = 1, front%edge_count
          if (points%chain(front%edge_node(1, k)) /= points%chain(i)) cycle
+         if (.not. same_part(front, points, i, k)) cycle
          call edge_in_material(front, points, k, a, b)
          if (norm2(0.5_wp*(a + b) - points%x(:, i)) > reach) cycle
-         length = length + dot_product(points%frame(:, 1, i), front%edge_e1(:, k)) &
-                  *edge_length(a, b, points%x(:, i), points%frame(:, 3, i), half_width)
+         if (abs(points%outward(1, i)) > 1e-9_wp) then
+            length = length + length_near_end(points, i, a, b, front%edge_e1(:, k), half_width)
+         else
+            length = length + dot_product(points%frame(:, 1, i), front%edge_e1(:, k)) &
+               *edge_length(a, b, points%x(:, i), points%frame(:, 3, i), half_width)
+         end if
       end do
    end function window_length
+
+   !> Integral of l (direction . n) along an edge near the end of a front, by 16 midpoints.
+   pure function length_near_end(points, i, a, b, ahead, half_width) result(length)
+      type(front_points_t), intent(in) :: points
+      integer, intent(in) :: i                          !! point
+      real(wp), intent(in) :: a(3), b(3), ahead(3)      !! the edge and the normal ahead of it
+      real(wp), intent(in) :: half_width
+      real(wp) :: length, x(3), direction(3), fade, l, slope
+      integer, parameter :: steps = 16
+      integer :: k
+
+      length = 0
+      do k = 1, steps
+         x = a + (real(k, wp) - 0.5_wp)/real(steps, wp)*(b - a)
+         call window_at(dot_product(x - points%x(:, i), points%frame(:, 3, i)), half_width, l, &
+            slope)
+         call direction_at(points, i, x, half_width, direction, fade)
+         length = length + l*dot_product(matmul(points%frame(:, :, i), direction), ahead)
+      end do
+      length = length*norm2(b - a)/real(steps, wp)
+   end function length_near_end
 
    !> Ends of an edge, moved to the end of the material where it is the last of an open front.
    pure subroutine edge_in_material(front, points, k, a, b)

@@ -24,6 +24,7 @@ module xmpm_front_values
    integer, parameter :: flag_smaller = 32   !! not all radii fit: the largest that does is used
 
    real(wp), parameter :: volume_error = 0.05_wp   !! a domain with less material leaves the body
+   real(wp), parameter :: round = 1.05_wp          !! largest radius over that of the front's bend
    real(wp), parameter :: overlap = 1e-9_wp        !! of the faces, over the distance behind the
                                                    !! front, from which they are closed
 
@@ -93,7 +94,8 @@ contains
       integer :: fits, n, r, m
 
       call count_fitting(shape, sums%volume(:, i)/max(rates%length(i), tiny(1.0_wp)), fits)
-      fits = min(fits, findloc([rates%found(:, i), .false.], .false., 1) - 1)
+      fits = min(fits, findloc([rates%found(:, i), .false.], .false., 1) - 1, &
+         count(shape%radius <= round*values%points%bend(i)))
       n = max(fits, 1)
       if (fits < size(shape%radius)) values%flags(i) = values%flags(i) &
          + merge(flag_smaller, flag_leaves, fits > 0)

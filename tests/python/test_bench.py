@@ -39,7 +39,7 @@ def test_extra_cost_is_the_median_ratio_of_alternating_pairs(monkeypatch):
 def test_speed_leaves_set_up_out_and_memory_is_a_difference(monkeypatch):
     def run(deck, preset, ranks=1):
         steps = int(deck.split("steps = ")[1].split()[0])
-        half = "20.3\n" in deck
+        half = "20.5\n" in deck
         return types.SimpleNamespace(
             cpu_s=5.0 + 0.025 * steps,
             wall_s=5.0 + 0.025 * steps / ranks,

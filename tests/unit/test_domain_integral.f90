@@ -4,11 +4,11 @@ program test_domain_integral
    use xmpm_kinds, only: wp, pi
    use xmpm_error, only: error_t
    use xmpm_surface, only: build_surface
-   use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_disc
+   use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_disc, make_sector
    use xmpm_front, only: front_test_points, mark_front
    use xmpm_crack, only: crack_t
    use xmpm_samples, only: sample_t, place_sample
-   use xmpm_front_points, only: front_points_t, list_points, window_length
+   use xmpm_front_points, only: front_points_t, list_points, end_points, window_length
    use xmpm_domain_integral, only: domain_sums_t, domain_shape_t, sum_domains, clear_sums, &
       plateau_area
    use xmpm_velocity_functions, only: elastic_constants_t, elastic_constants, velocity_functions
@@ -32,6 +32,7 @@ program test_domain_integral
    suite%name = 'domain_integral'
    call penny()
    call converges()
+   call quarter()
    call finish(suite)
 
 contains
@@ -64,6 +65,46 @@ contains
       call check(suite, 'K at a fixed radius has half the error on half the cells', &
          all(abs(fine%mean) < 0.5_wp*abs(coarse%mean)))
    end subroutine converges
+
+   !> A quarter of the block between two planes of symmetry, the front ends on both: q must lie in
+   !> the planes, though the front is curved.
+   subroutine quarter()
+      type(crack_t) :: crack
+      type(crack_plane_t) :: plane
+      type(front_points_t) :: points
+      type(domain_shape_t) :: shape
+      type(domain_sums_t) :: sums
+      type(sample_t), allocatable :: samples(:), whole(:)
+      type(errors_t) :: e
+      type(error_t), allocatable :: error
+      real(wp), parameter :: centre(3) = [0.0_wp, 0.0_wp, 0.0831_wp], a = 6.0_wp
+      real(wp), allocatable :: x(:, :), test(:, :), still(:), drift(:, :), length(:)
+      integer, allocatable :: tri(:, :)
+      integer :: i
+
+      call set_plane(centre, [1.0_wp, 0.0_wp, 0.0_wp], [0.0_wp, 1.0_wp, 0.0_wp], plane, error)
+      call make_sector(plane, [a, a], [0.0_wp, 90.0_wp], 1.0_wp, x, tri, error)
+      call build_surface(x, tri, crack%surface, error)
+      call check_no_error(suite, 'a quarter of a disc', error)
+      call front_test_points(crack%surface, 1.0_wp, test)
+      call mark_front(crack%surface, norm2(test(:2, :), 1) > a, crack%front)
+      call list_points(crack, points)
+      call end_points(crack%front, points)
+      shape%inner = 1.5_wp
+      shape%radius = radii
+      shape%half_width = 2
+      shape%reach = shape%half_width + radii(3)
+      call fill_samples(crack, centre, a, radii(3), whole)
+      samples = pack(whole, whole%x(1) > 0 .and. whole%x(2) > 0)
+      call clear_sums(sums, 3, points%n)
+      allocate (still(points%n), drift(3, points%n), source=0.0_wp)
+      call sum_domains(samples, crack%front, points, shape, still, drift, sums)
+      length = [(window_length(crack%front, points, i, shape%half_width, shape%reach), &
+         i=1, points%n)]
+      call compare(a, shape, sums, length, e)
+      ! as for the whole disc; recorded 0.77, 0.60, 0.55 %, and 4 to 6 % with e1 all through
+      call check(suite, 'K at every point between planes of symmetry', all(e%worst < 0.011_wp))
+   end subroutine quarter
 
    !> Errors along a penny of radius a in cells of size h = 1.
    subroutine measure(a, h, radius, e)
