@@ -25,7 +25,11 @@ module xmpm_fracture
    implicit none
    private
 
-   public :: fracture_t, start_traces, measure_front, release_range
+   public :: fracture_t, start_traces, trace_reach, measure_front, release_range
+
+   real(wp), parameter :: spare = 2.0_wp     !! particles traced beyond the largest domain [cells]
+   real(wp), parameter :: ahead = 20.0_wp    !! the same around a front that grows, so that their
+                                             !! rotation is known when it comes [cells]
 
    !> What the deck wants, and what was found last.
    type :: fracture_t
@@ -40,6 +44,16 @@ module xmpm_fracture
    end type fracture_t
 
 contains
+
+   !> Distance from a front within which particles are traced.
+   pure function trace_reach(fracture, h, grows) result(reach)
+      type(fracture_t), intent(in) :: fracture
+      real(wp), intent(in) :: h        !! cell size [length]
+      logical, intent(in) :: grows     !! the front will move
+      real(wp) :: reach                !! [length]
+
+      reach = maxval(fracture%shape%radius) + merge(ahead, spare, grows)*h
+   end function trace_reach
 
    !> Trace the particles around the fronts of a crack, from now on. What they have of stress now
    !> counts as reached from a state without stress and rotation.

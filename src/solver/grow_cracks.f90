@@ -8,7 +8,7 @@ module xmpm_grow_cracks
    use xmpm_stage_clock, only: start_stage, stop_stage, stage_crack
    use xmpm_surface_index, only: nearest_t, nearest_on_surface
    use xmpm_crack, only: gather_crack, find_near, advance_ramp, replace_surface
-   use xmpm_fracture, only: start_traces
+   use xmpm_fracture, only: start_traces, trace_reach
    use xmpm_front_values, only: flag_leaves
    use xmpm_grow_surface, only: grown_t, grow_surface
    use xmpm_occupancy, only: occupancy_t, look_around, body_at
@@ -19,7 +19,7 @@ module xmpm_grow_cracks
    implicit none
    private
 
-   public :: grow_cracks, judge_fronts, know_nodes
+   public :: grow_cracks, judge_fronts, know_nodes, trace_ahead
 
    integer, parameter :: look = 4   !! bins around a front where material is looked for
 
@@ -151,12 +151,19 @@ contains
       call tell(m, g, grown)
       call know_nodes(m, g, error)
       if (allocated(error)) return
-      if (any(m%fracture%cracks == c)) then
-         call start_traces(m%cracks(c), maxval(m%fracture%shape%radius) &
-            + 2*m%grid%lattice%size, m%grid, m%bodies, m%particles)
-      end if
+      call trace_ahead(m, c)
       call find_near(m%cracks(c), c, m%grid, m%particles, error, grown=.true.)
    end subroutine regrow
+
+   !> Trace the particles that the fronts of a crack will come to, long before they do.
+   subroutine trace_ahead(m, c)
+      type(model_t), intent(inout) :: m
+      integer, intent(in) :: c   !! crack
+
+      if (.not. any(m%fracture%cracks == c)) return
+      call start_traces(m%cracks(c), trace_reach(m%fracture, m%grid%lattice%size, .true.), m%grid, &
+         m%bodies, m%particles)
+   end subroutine trace_ahead
 
    !> Nodes that come within a cell of another crack stay where they are.
    subroutine find_obstacles(m, g, advance)

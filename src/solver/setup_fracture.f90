@@ -5,7 +5,7 @@ module xmpm_setup_fracture
    use xmpm_communicator, only: max_all
    use xmpm_deck, only: deck_t, block_t, count_blocks, find_block, block_named, has, real_of, &
       reals_of, texts_of, complain
-   use xmpm_fracture, only: start_traces
+   use xmpm_fracture, only: start_traces, trace_reach
    use xmpm_rates, only: method_domain, method_contour, method_paper
    use xmpm_model, only: model_t
    implicit none
@@ -37,7 +37,7 @@ contains
       allocate (m%fracture%values(size(m%fracture%cracks)))
       do i = 1, size(m%fracture%cracks)
          call start_traces(m%cracks(m%fracture%cracks(i)), &
-            maxval(m%fracture%shape%radius) + 2*m%grid%lattice%size, m%grid, m%bodies, m%particles)
+            trace_reach(m%fracture, m%grid%lattice%size, .false.), m%grid, m%bodies, m%particles)
       end do
    end subroutine set_up_fracture
 

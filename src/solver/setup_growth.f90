@@ -15,7 +15,7 @@ module xmpm_setup_growth
    use xmpm_prescribed, only: prescribed_t, prescribed_speed
    use xmpm_front_line, only: limits_for
    use xmpm_growth, only: growth_t, region_t, start_growth
-   use xmpm_grow_cracks, only: know_nodes
+   use xmpm_grow_cracks, only: know_nodes, trace_ahead
    use xmpm_model, only: model_t
    implicit none
    private
@@ -89,6 +89,7 @@ contains
       call start_growth(growth, m%cracks(crack))
       m%growth = [m%growth, growth]
       call know_nodes(m, size(m%growth), failure)
+      call trace_ahead(m, crack)
       if (allocated(failure)) call complain(deck, block, '', failure%message)
    end subroutine add_growth
 
