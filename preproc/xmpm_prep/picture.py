@@ -75,8 +75,8 @@ def draw_with_pyvista(scene, path):
             entries,
             bcolor=None,
             face="rectangle",
-            loc="lower right",
-            size=(0.22, 0.03 * len(entries)),
+            loc="upper left",
+            size=(0.05 + 0.018 * max(len(name) for name, _ in entries), 0.03 * len(entries)),
         )
     plotter.screenshot(path)
     plotter.close()
