@@ -1,7 +1,7 @@
 !> Fracture parameters of all fronts that the deck asks for.
 module xmpm_fracture
    use xmpm_kinds, only: wp
-   use xmpm_communicator, only: comm_t, sum_all, max_all
+   use xmpm_communicator, only: comm_t, sum_all
    use xmpm_lattice, only: bin_corner
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, attach, bin_of_chunk, c_s, c_vol
@@ -18,7 +18,8 @@ module xmpm_fracture
    use xmpm_near_tip, only: strain_of
    use xmpm_samples, only: sample_t, collect_samples
    use xmpm_material_drift, only: drift_sums, drift_of
-   use xmpm_front_points, only: list_points, end_points, front_points_t
+   use xmpm_front_points, only: list_points, front_points_t
+   use xmpm_front_ends, only: find_ends
    use xmpm_domain_integral, only: domain_shape_t, domain_sums_t, clear_sums, sum_domains
    use xmpm_rates, only: rates_t, find_rates, method_domain
    use xmpm_front_values, only: front_values_t, clear_values, find_values, flag_other
@@ -150,54 +151,6 @@ contains
          range(2) = max(range(2), maxval(fracture%values(i)%j))
       end do
    end function release_range
-
-   !> Where the material ends along each open front. Collective.
-   subroutine find_ends(front, comm, h, samples, points)
-      type(front_t), intent(in) :: front
-      type(comm_t), intent(in) :: comm
-      real(wp), intent(in) :: h                           !! cell size [length]
-      type(sample_t), intent(in) :: samples(:)
-      type(front_points_t), intent(inout) :: points       !! ends are moved
-      real(wp), allocatable :: most(:)
-      real(wp) :: t(3), end(3)
-      integer :: c, i, way
-
-      if (all(front%closed)) return
-      allocate (most(2*front%chain_count), source=-huge(1.0_wp))
-      do c = 1, front%chain_count
-         if (front%closed(c)) cycle
-         do way = 1, 2
-            call end_of_chain(front, c, way, end, t)
-            do i = 1, size(samples)
-               if (samples(i)%r > 1.5_wp*h) cycle
-               if (norm2(samples(i)%foot - end) > 3*h) cycle
-               most(2*c - 2 + way) = max(most(2*c - 2 + way), &
-                  dot_product(samples(i)%x - end, t) + 0.5_wp*samples(i)%volume**(1/3.0_wp))
-            end do
-         end do
-      end do
-      call max_all(comm, most)
-      where (most < -3*h) most = 0
-      points%beyond = reshape(min(most, h), [2, front%chain_count])
-      call end_points(front, points)
-   end subroutine find_ends
-
-   !> First or last node of a chain and the direction out of it.
-   pure subroutine end_of_chain(front, c, way, end, t)
-      type(front_t), intent(in) :: front
-      integer, intent(in) :: c, way
-      real(wp), intent(out) :: end(3), t(3)
-      integer :: node, inner
-
-      node = front%chain_offset(c)
-      inner = node + 1
-      if (way == 2) then
-         node = front%chain_offset(c + 1) - 1
-         inner = node - 1
-      end if
-      end = front%x(:, node)
-      t = unit_vector(end - front%x(:, inner))
-   end subroutine end_of_chain
 
    !> Velocity of the material at moving points. Collective.
    function drift_at(samples, points, speed, comm) result(drift)

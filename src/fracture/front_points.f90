@@ -12,6 +12,8 @@ module xmpm_front_points
    public :: front_points_t, list_points, end_points, window_at, window_length, direction_at
    public :: same_part
 
+   real(wp), parameter :: straight = 0.9994_wp  !! cosine (2 degrees) from which on a front counts
+                                                !! as normal to the surface where it ends
    real(wp), parameter :: turned = 0.17_wp   !! cosine (80 degrees) from which on a part of a front
                                              !! is another one
 
@@ -32,6 +34,8 @@ module xmpm_front_points
       real(wp), allocatable :: beyond(:, :)     !! (2,chains) how far the material goes on past the
                                                 !! first and last node, negative where it ends
                                                 !! before them [length]
+      real(wp), allocatable :: wall(:, :, :)    !! (3,2,chains) outward normal of the material where
+                                                !! the front ends; 0 for that of the front itself
    end type front_points_t
 
 contains
@@ -51,7 +55,8 @@ contains
          allocate (points%frame(3, 3, points%n), points%turn(3, 3, points%n))
          allocate (points%bend(points%n))
          allocate (points%stop(3, points%n), points%outward(3, points%n), source=0.0_wp)
-         allocate (points%beyond(2, f%chain_count), source=0.0_wp)
+         allocate (points%beyond(2, f%chain_count), points%wall(3, 2, f%chain_count), &
+            source=0.0_wp)
          points%frame(:, 1, :) = f%e1
          points%frame(:, 2, :) = f%e2
          points%frame(:, 3, :) = f%e3
@@ -117,14 +122,14 @@ contains
          last = front%chain_offset(c + 1) - 1
          call pull_back(front, points, first, first + 1, 1.0_wp, points%beyond(1, c))
          call pull_back(front, points, last, last - 1, -1.0_wp, points%beyond(2, c))
-         call face_ends(points, first, last)
+         call face_ends(points, c, first, last)
       end do
    end subroutine end_points
 
-   !> Give each point of a chain its nearest end, and the plane normal to the front there.
-   pure subroutine face_ends(points, first, last)
+   !> Give each point of a chain its nearest end, and the plane of the material's surface there.
+   pure subroutine face_ends(points, chain, first, last)
       type(front_points_t), intent(inout) :: points
-      integer, intent(in) :: first, last
+      integer, intent(in) :: chain, first, last
       real(wp) :: n(3)
       integer :: i, end
 
@@ -133,6 +138,10 @@ contains
          if (norm2(points%x(:, last) - points%x(:, i)) &
              < norm2(points%x(:, first) - points%x(:, i))) end = last
          n = merge(1.0_wp, -1.0_wp, end == last)*points%frame(:, 3, end)
+         associate (wall => points%wall(:, merge(2, 1, end == last), chain))
+            ! A front normal to the surface ends in the plane of its own frame.
+            if (dot_product(wall, n) < straight .and. norm2(wall) > 0.5_wp) n = wall
+         end associate
          n = matmul(n, points%frame(:, :, i))
          n(2) = 0
          points%stop(:, i) = points%x(:, end)
