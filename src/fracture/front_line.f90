@@ -4,12 +4,11 @@ module xmpm_front_line
    use xmpm_kinds, only: wp
    use xmpm_vectors, only: unit_vector
    use xmpm_front, only: front_t
-   use xmpm_material_test, only: material_test_t
    implicit none
    private
 
    public :: line_t, front_limits_t
-   public :: limits_for, line_of_chain, reach_out, merge_short, split_long, smooth_line, parent_of
+   public :: limits_for, line_of_chain, merge_short, split_long, smooth_line, parent_of, insert_node
 
    !> Lengths that a front keeps to.
    type :: front_limits_t
@@ -17,6 +16,7 @@ module xmpm_front_line
       real(wp) :: shortest = 0.5_wp   !! shorter segments are merged [length]
       real(wp) :: longest = 1.4_wp    !! longer segments are split [length]
       real(wp) :: least = 0.05_wp     !! a node waits until it has this way to go [length]
+      real(wp) :: meeting = 0.5_wp    !! fronts of one crack that are nearer have met [length]
    end type front_limits_t
 
    !> A front as it will be.
@@ -28,8 +28,6 @@ module xmpm_front_line
       real(wp), allocatable :: share(:)      !! (n) part of the second of them
       integer, allocatable :: vertex(:)      !! (n) vertex of the surface where a node stays, else 0
    end type line_t
-
-   integer, parameter :: most_steps_out = 12          !! half cells that an end may be taken out
 
 contains
 
@@ -44,6 +42,7 @@ contains
       limits%shortest = 0.5_wp*min(h, element)
       limits%longest = 1.4_wp*min(h, element)
       limits%least = 0.1_wp*min(increment, limits%shortest)
+      limits%meeting = limits%shortest
    end function limits_for
 
    !> The nodes of one chain, each moved by its advance; those that stay keep their vertex.
@@ -78,30 +77,6 @@ contains
 
       node = line%from(merge(2, 1, line%share(i) > 0.5_wp), i)
    end function parent_of
-
-   !> Give an open end that has come to lie in the material a further node outside.
-   pure subroutine reach_out(line, limits, material)
-      type(line_t), intent(inout) :: line
-      type(front_limits_t), intent(in) :: limits
-      class(material_test_t), intent(in) :: material   !! where material is
-      integer :: side, end_node, before, i
-      real(wp) :: t(3), x(3)
-
-      if (line%closed .or. line%n < 2) return
-      do side = 1, 2
-         end_node = merge(1, line%n, side == 1)
-         before = merge(2, line%n - 1, side == 1)
-         if (line%vertex(end_node) > 0) cycle
-         if (.not. material%inside(line%x(:, end_node))) cycle
-         t = unit_vector(line%x(:, end_node) - line%x(:, before))
-         do i = 1, most_steps_out
-            x = line%x(:, end_node) + 0.5_wp*limits%cell*real(i, wp)*t
-            if (.not. material%inside(x)) exit
-         end do
-         call insert_node(line, merge(0, line%n, side == 1), x, line%from(:, end_node), &
-            line%share(end_node))
-      end do
-   end subroutine reach_out
 
    !> Merge the nodes of segments that are too short or have turned round.
    !>
@@ -311,11 +286,13 @@ contains
       n = line%n - merge(0, 1, line%closed)
    end function segments
 
+   !> Put a new node into a line.
    pure subroutine insert_node(line, after, x, from, share)
       type(line_t), intent(inout) :: line
-      integer, intent(in) :: after
-      real(wp), intent(in) :: x(3), share
-      integer, intent(in) :: from(2)
+      integer, intent(in) :: after      !! node before it, 0 for none
+      real(wp), intent(in) :: x(3)      !! [length]
+      integer, intent(in) :: from(2)    !! nodes of the old front that it stands for
+      real(wp), intent(in) :: share     !! part of the second of them
 
       line%x = reshape([line%x(:, :after), x, line%x(:, after + 1:)], [3, line%n + 1])
       line%from = reshape([line%from(:, :after), from, line%from(:, after + 1:)], [2, line%n + 1])

@@ -36,7 +36,7 @@ contains
             if (c == chain(i)) cycle
             gap = nearest_in_edge(front, k, front%x(:, i)) - front%x(:, i)
             d = norm2(gap)
-            if (d > norm2(advance(:, i)) + norm2(advance(:, j)) + limits%shortest) cycle
+            if (d > norm2(advance(:, i)) + norm2(advance(:, j)) + limits%meeting) cycle
             if (dot_product(front%e1(:, i), front%e1(:, j)) > facing) cycle
             if (dot_product(gap, front%e1(:, i)) <= 0.0_wp .or. .not. d < best) cycle
             best = d

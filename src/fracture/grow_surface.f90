@@ -1,21 +1,24 @@
 !> One growth of a crack surface: new triangles ahead of its fronts, and the fronts that follow.
 module xmpm_grow_surface
-   use xmpm_kinds, only: wp, i8
+   use xmpm_kinds, only: wp
    use xmpm_error, only: error_t
-   use xmpm_hash_map, only: hash_map_t, clear_map, set_value, value_of
-   use xmpm_vectors, only: cross, unit_vector
-   use xmpm_surface, only: surface_t, build_surface, refresh_geometry
-   use xmpm_front, only: front_t, mark_front
+   use xmpm_surface, only: surface_t
+   use xmpm_front, only: front_t
    use xmpm_material_test, only: material_test_t
-   use xmpm_front_line, only: line_t, front_limits_t, line_of_chain, reach_out, merge_short, &
-      split_long, smooth_line
+   use xmpm_front_line, only: line_t, front_limits_t, line_of_chain, merge_short, split_long, &
+      smooth_line
+   use xmpm_front_reach, only: reach_out, way_through
    use xmpm_front_strip, only: strip_between
-   use xmpm_front_meeting, only: find_meetings, ready_to_join, ready_to_close
+   use xmpm_front_bridge, only: join_chains, close_chain
+   use xmpm_front_meeting, only: find_meetings, ready_to_join, ready_to_close, chain_of
+   use xmpm_front_search, only: find_front
+   use xmpm_surface_draft, only: draft_t, start_draft, add_vertex, add_triangles, add_pairs, &
+      finish_draft
    use xmpm_mesh_check, only: mesh_quality_t, check_new_triangles
    implicit none
    private
 
-   public :: grown_t, grow_surface, find_front
+   public :: grown_t, grow_surface
 
    !> A crack after a growth.
    type :: grown_t
@@ -32,19 +35,17 @@ module xmpm_grow_surface
       integer :: joined = 0                    !! pairs of fronts that were joined, and closed rests
    end type grown_t
 
-   !> What grows while chain after chain is worked on.
-   type :: draft_t
-      real(wp), allocatable :: x(:, :)         !! (3,nv) [length]
-      real(wp), allocatable :: motion(:, :)    !! (3,nv) mean displacement of new vertices [length]
-      integer, allocatable :: parent(:, :)     !! (2,nv)
-      real(wp), allocatable :: share(:)        !! (nv)
-      integer, allocatable :: tri(:, :)        !! (3,nt)
-      integer, allocatable :: pair(:, :)       !! (2,np) vertices of edges that may be fronts
-   end type draft_t
+   !> What is decided about the nodes of the old fronts before there is a new line.
+   type :: plan_t
+      real(wp), allocatable :: advance(:, :)   !! (3,nn) way of each node [length]
+      logical, allocatable :: stays(:)         !! (nn) nodes that do not go
+      logical, allocatable :: turns(:)         !! (chains) open ends are not led out
+      integer, allocatable :: partner(:)       !! (nn) chain that a node has met
+   end type plan_t
 
    integer, parameter :: smoothing = 3   !! passes over a new front; waves of four segments and
                                          !! less are then halved at least
-   real(wp), parameter :: test_ahead = 0.3_wp  !! distance of test points ahead of an edge [cells]
+   integer, parameter :: attempts = 6    !! lines that are tried before growth has failed
 
 contains
 
@@ -52,7 +53,8 @@ contains
    !>
    !> New vertices take the mean displacement of both faces from the front, without an opening.
    !> Nodes with less to go than `limits%least`, and those that wait, stay. What has left the
-   !> material wholly, and the sides of the new strips, are no fronts any more.
+   !> material wholly, and the sides of the new strips, are no fronts any more. Where triangles
+   !> outside the material do not hold, their nodes stay.
    subroutine grow_surface(surface, front, advance, waits, limits, material, grown, error)
       type(surface_t), intent(in) :: surface             !! the crack
       type(front_t), intent(in) :: front                 !! its fronts
@@ -62,58 +64,87 @@ contains
       class(material_test_t), intent(in) :: material     !! where material is
       type(grown_t), intent(out) :: grown                !! the crack after it
       type(error_t), allocatable, intent(out) :: error   !! code_numerics: no valid triangles
+      type(plan_t) :: plan
       type(draft_t) :: draft
-      integer :: partner(front%node_count), chain, other
-      logical :: stays(front%node_count)
+      integer :: attempt
+      logical :: changed
 
-      call find_meetings(front, advance, limits, partner)
-      stays = waits .or. partner > 0 .or. norm2(advance, 1) < limits%least
-      call start_draft(surface, front, draft)
-      do chain = 1, front%chain_count
-         other = ready_to_join(front, chain, partner, material)
-         if (other > 0) then
-            if (other < chain) cycle
-            call join_chains(front, chain, other, draft)
-            grown%joined = grown%joined + 1
-         else if (ready_to_close(front, chain, limits)) then
-            call close_chain(front, chain, draft)
-            grown%joined = grown%joined + 1
-         else
-            call grow_chain(front, chain, advance, stays, limits, material, draft)
-         end if
+      call make_plan(front, advance, waits, limits, material, plan)
+      do attempt = 1, attempts
+         call draw(surface, front, plan, limits, material, draft, grown%joined)
+         call finish_draft(surface, draft, grown%surface, error)
+         if (allocated(error)) return
+         call check_new_triangles(grown%surface, surface%triangle_count + 1, grown%quality, error)
+         if (.not. allocated(error)) exit
+         call hold_outside(front, draft, surface%triangle_count, grown%quality%faulty, material, &
+            plan, changed)
+         if (.not. changed) return
       end do
-      grown%met = partner > 0
+      if (allocated(error)) return
+      grown%met = plan%partner > 0
       grown%old_vertices = surface%vertex_count
-      call finish_draft(surface, draft, grown, error)
-      if (allocated(error)) return
-      call check_new_triangles(grown%surface, surface%triangle_count + 1, grown%quality, error)
-      if (allocated(error)) return
+      call move_alloc(draft%parent, grown%parent)
+      call move_alloc(draft%share, grown%share)
       call find_front(grown%surface, draft%pair, limits%cell, material, grown%front)
    end subroutine grow_surface
 
-   subroutine start_draft(surface, front, draft)
+   subroutine make_plan(front, advance, waits, limits, material, plan)
+      type(front_t), intent(in) :: front
+      real(wp), intent(in) :: advance(:, :)
+      logical, intent(in) :: waits(:)
+      type(front_limits_t), intent(in) :: limits
+      class(material_test_t), intent(in) :: material
+      type(plan_t), intent(out) :: plan
+      integer :: chain
+      logical :: ready
+
+      plan%advance = advance
+      allocate (plan%partner(front%node_count))
+      call find_meetings(front, advance, limits, plan%partner)
+      do chain = 1, front%chain_count
+         associate (first => front%chain_offset(chain), last => front%chain_offset(chain + 1) - 1)
+            if (any(waits(first:last)) .or. any(plan%partner(first:last) > 0)) cycle
+            if (.not. any(norm2(advance(:, first:last), 1) > limits%least)) cycle
+         end associate
+         call way_through(front, chain, limits, material, plan%advance, ready)
+      end do
+      plan%stays = waits .or. plan%partner > 0 .or. norm2(plan%advance, 1) < limits%least
+      allocate (plan%turns(front%chain_count), source=.false.)
+   end subroutine make_plan
+
+   !> Draw the surface that a plan leads to.
+   subroutine draw(surface, front, plan, limits, material, draft, joined)
       type(surface_t), intent(in) :: surface
       type(front_t), intent(in) :: front
+      type(plan_t), intent(in) :: plan
+      type(front_limits_t), intent(in) :: limits
+      class(material_test_t), intent(in) :: material
       type(draft_t), intent(out) :: draft
-      integer :: i
+      integer, intent(out) :: joined
+      integer :: chain, other
 
-      draft%x = surface%x
-      draft%tri = surface%tri
-      draft%motion = 0.5_wp*(surface%up + surface%um)
-      allocate (draft%parent(2, surface%vertex_count), source=0)
-      allocate (draft%share(surface%vertex_count), source=0.0_wp)
-      allocate (draft%pair(2, 0))
-      do i = 1, front%node_count
-         draft%parent(:, front%vertex(i)) = i
+      joined = 0
+      call start_draft(surface, front, draft)
+      do chain = 1, front%chain_count
+         other = ready_to_join(front, chain, plan%partner, material)
+         if (other > 0) then
+            if (other < chain) cycle
+            call join_chains(front, chain, other, limits, draft)
+            joined = joined + 1
+         else if (ready_to_close(front, chain, limits)) then
+            call close_chain(front, chain, draft)
+            joined = joined + 1
+         else
+            call grow_chain(front, chain, plan, limits, material, draft)
+         end if
       end do
-   end subroutine start_draft
+   end subroutine draw
 
    !> New line, its vertices and the strip to it.
-   subroutine grow_chain(front, chain, advance, stays, limits, material, draft)
+   subroutine grow_chain(front, chain, plan, limits, material, draft)
       type(front_t), intent(in) :: front
       integer, intent(in) :: chain
-      real(wp), intent(in) :: advance(:, :)
-      logical, intent(in) :: stays(:)
+      type(plan_t), intent(in) :: plan
       type(front_limits_t), intent(in) :: limits
       class(material_test_t), intent(in) :: material
       type(draft_t), intent(inout) :: draft
@@ -123,9 +154,9 @@ contains
 
       first = front%chain_offset(chain)
       last = front%chain_offset(chain + 1) - 1
-      line = line_of_chain(front, chain, advance, stays)
+      line = line_of_chain(front, chain, plan%advance, plan%stays)
       if (any(line%vertex == 0)) then
-         call reach_out(line, limits, material)
+         call reach_out(line, front, chain, limits, material, plan%turns(chain))
          call merge_short(line, front, limits)
          call split_long(line, limits)
          do pass = 1, smoothing
@@ -153,180 +184,35 @@ contains
       end do
    end subroutine add_vertices
 
-   subroutine add_vertex(front, x, from, share, draft)
+   !> Let the nodes outside that faulty triangles come from stay, and the ends of their fronts turn
+   !> about the old ones: surface outside the material has nothing to cut.
+   subroutine hold_outside(front, draft, old_triangles, faulty, material, plan, changed)
       type(front_t), intent(in) :: front
-      real(wp), intent(in) :: x(3), share
-      integer, intent(in) :: from(2)
-      type(draft_t), intent(inout) :: draft
-      integer :: n
-      real(wp) :: motion(3)
-
-      n = size(draft%x, 2) + 1
-      motion = (1.0_wp - share)*draft%motion(:, front%vertex(from(1))) &
-         + share*draft%motion(:, front%vertex(from(2)))
-      draft%x = reshape([draft%x, x], [3, n])
-      draft%motion = reshape([draft%motion, motion], [3, n])
-      draft%parent = reshape([draft%parent, from], [2, n])
-      draft%share = [draft%share, share]
-   end subroutine add_vertex
-
-   pure subroutine add_triangles(tri, draft)
-      integer, intent(in) :: tri(:, :)
-      type(draft_t), intent(inout) :: draft
-
-      draft%tri = reshape([draft%tri, tri], [3, size(draft%tri, 2) + size(tri, 2)])
-   end subroutine add_triangles
-
-   pure subroutine add_pairs(vertex, closed, draft)
-      integer, intent(in) :: vertex(:)
-      logical, intent(in) :: closed
-      type(draft_t), intent(inout) :: draft
-      integer :: i, n
-
-      n = size(vertex)
-      draft%pair = reshape([draft%pair, (vertex(i), vertex(i + 1), i=1, n - 1)], &
-         [2, size(draft%pair, 2) + n - 1])
-      if (closed) draft%pair = reshape([draft%pair, vertex(n), vertex(1)], &
-         [2, size(draft%pair, 2) + 1])
-   end subroutine add_pairs
-
-   !> Triangles between two fronts that have met.
-   subroutine join_chains(front, chain, other, draft)
-      type(front_t), intent(in) :: front
-      integer, intent(in) :: chain, other
-      type(draft_t), intent(inout) :: draft
-      integer, allocatable :: tri(:, :)
-      integer :: i, first, last
-
-      first = front%chain_offset(chain)
-      last = front%chain_offset(chain + 1) - 1
-      associate (ahead => [(front%vertex(i), i=front%chain_offset(other + 1) - 1, &
-         front%chain_offset(other), -1)])
-         call strip_between(front%vertex(first:last), ahead, front%closed(chain), draft%x, &
-            front%e2(:, first:last), tri)
-      end associate
-      call add_triangles(tri, draft)
-   end subroutine join_chains
-
-   !> Triangles from a small closed front to its centre.
-   subroutine close_chain(front, chain, draft)
-      type(front_t), intent(in) :: front
-      integer, intent(in) :: chain
-      type(draft_t), intent(inout) :: draft
-      integer :: i, first, last, n, centre
-
-      first = front%chain_offset(chain)
-      last = front%chain_offset(chain + 1) - 1
-      n = last - first + 1
-      call add_vertex(front, sum(front%x(:, first:last), 2)/real(n, wp), [first, first + n/2], &
-         0.5_wp, draft)
-      centre = size(draft%x, 2)
-      do i = first, last
-         call add_triangles(reshape([front%vertex(i), front%vertex(merge(first, i + 1, &
-            i == last)), centre], [3, 1]), draft)
-      end do
-   end subroutine close_chain
-
-   !> Topology, displacements and geometry of the grown surface.
-   subroutine finish_draft(surface, draft, grown, error)
-      type(surface_t), intent(in) :: surface
-      type(draft_t), intent(inout) :: draft
-      type(grown_t), intent(inout) :: grown
-      type(error_t), allocatable, intent(out) :: error
-      integer :: n
-
-      call build_surface(draft%x, draft%tri, grown%surface, error)
-      if (allocated(error)) return
-      n = surface%vertex_count
-      associate (s => grown%surface)
-         s%up = draft%motion
-         s%um = draft%motion
-         s%start = draft%x - draft%motion
-         s%up(:, :n) = surface%up
-         s%um(:, :n) = surface%um
-         s%start(:, :n) = surface%start
-         call refresh_geometry(s)
-      end associate
-      call move_alloc(draft%parent, grown%parent)
-      call move_alloc(draft%share, grown%share)
-   end subroutine finish_draft
-
-   !> Fronts among given edges: those of the boundary with material ahead of any part of them.
-   subroutine find_front(surface, pair, h, material, front)
-      type(surface_t), intent(in) :: surface           !! mesh
-      integer, intent(in) :: pair(:, :)                !! (2,np) vertices of edges that may be
-                                                       !! fronts
-      real(wp), intent(in) :: h                        !! grid size [length]
-      class(material_test_t), intent(in) :: material   !! where material is
-      type(front_t), intent(out) :: front              !! chains and frames
-      type(hash_map_t) :: may
-      logical :: inside(size(surface%boundary))
-      integer :: i, e
-
-      call clear_map(may, size(pair, 2))
-      do i = 1, size(pair, 2)
-         call set_value(may, pair_key(pair(:, i)), 1)
-      end do
-      do i = 1, size(inside)
-         e = surface%boundary(i)
-         inside(i) = .false.
-         if (value_of(may, pair_key(surface%edge(:, e)), 0) == 0) cycle
-         inside(i) = has_material_ahead(surface, e, h, material)
-      end do
-      call mark_front(surface, inside, front)
-      call drop_rests(surface, material, inside, front)
-   end subroutine find_front
-
-   !> Chains without a node in the material are done: what is left ahead of them is less than a
-   !> segment, and the ramp has reached it.
-   subroutine drop_rests(surface, material, inside, front)
-      type(surface_t), intent(in) :: surface
+      type(draft_t), intent(in) :: draft
+      integer, intent(in) :: old_triangles
+      logical, intent(in) :: faulty(:)                 !! (new triangles)
       class(material_test_t), intent(in) :: material
-      logical, intent(inout) :: inside(:)
-      type(front_t), intent(inout) :: front
-      logical :: keep(surface%edge_count), any_inside
-      integer :: c, i, k
+      type(plan_t), intent(inout) :: plan
+      logical, intent(out) :: changed
+      integer :: chain(front%node_count), t, k, i, node
 
-      keep = .false.
-      do c = 1, front%chain_count
-         any_inside = .false.
-         do i = front%chain_offset(c), front%chain_offset(c + 1) - 1
-            any_inside = any_inside .or. material%inside(front%x(:, i))
-         end do
-         do i = front%chain_offset(c), front%chain_offset(c + 1) - 1
-            k = front%node_edge(2, i)
-            if (k > 0) keep(front%surface_edge(k)) = any_inside
+      chain = chain_of(front)
+      changed = .false.
+      do t = 1, size(faulty)
+         if (.not. faulty(t)) cycle
+         do k = 1, 3
+            do i = 1, 2
+               node = draft%parent(i, draft%tri(k, old_triangles + t))
+               if (node == 0) cycle
+               changed = changed .or. .not. plan%turns(chain(node))
+               plan%turns(chain(node)) = .true.
+               if (plan%stays(node)) cycle
+               if (material%inside(front%x(:, node) + plan%advance(:, node)) .and. &
+                  material%inside(front%x(:, node))) cycle
+               plan%stays(node) = .true.
+               changed = .true.
+            end do
          end do
       end do
-      if (count(keep) == count(inside)) return
-      inside = inside .and. keep(surface%boundary)
-      call mark_front(surface, inside, front)
-   end subroutine drop_rests
-
-   pure function pair_key(pair) result(key)
-      integer, intent(in) :: pair(2)
-      integer(i8) :: key
-
-      key = int(minval(pair), i8)*2_i8**31 + int(maxval(pair), i8)
-   end function pair_key
-
-   !> Whether material is just ahead of an edge, at five places along it.
-   pure function has_material_ahead(surface, e, h, material) result(has)
-      type(surface_t), intent(in) :: surface
-      integer, intent(in) :: e
-      real(wp), intent(in) :: h
-      class(material_test_t), intent(in) :: material
-      logical :: has
-      real(wp) :: ahead(3), a(3), b(3), f
-      integer :: i
-
-      a = surface%x(:, surface%edge(1, e))
-      b = surface%x(:, surface%edge(2, e))
-      ahead = unit_vector(cross(b - a, surface%normal(:, surface%edge_triangle(1, e))))
-      has = .false.
-      do i = 1, 9, 2
-         f = 0.1_wp*real(i, wp)
-         has = has .or. material%inside(a + f*(b - a) + test_ahead*h*ahead)
-      end do
-   end function has_material_ahead
+   end subroutine hold_outside
 end module xmpm_grow_surface

@@ -8,6 +8,7 @@ module xmpm_growth
    use xmpm_speed_law, only: speed_law_t, tip_t
    use xmpm_front_line, only: front_limits_t
    use xmpm_grow_surface, only: grown_t
+   use xmpm_twist_rows, only: rise_of_rows
    implicit none
    private
 
@@ -43,6 +44,7 @@ module xmpm_growth
       real(wp), allocatable :: k_twice(:, :)          !! (3,nn) and that averaged again
       real(wp), allocatable :: rate(:)                !! (nn) energy release rate, as found last
       real(wp), allocatable :: kink(:)                !! (nn) of the criterion [rad]
+      real(wp), allocatable :: twist(:)               !! (nn) of the criterion [rad]
       real(wp), allocatable :: intensity(:)           !! (nn) K* of the criterion
       real(wp), allocatable :: toughness(:)           !! (nn) K_IC at the nodes
       real(wp), allocatable :: rayleigh(:)            !! (nn) wave speeds there [length/time]
@@ -68,7 +70,7 @@ contains
       n = crack%front%node_count
       crack%offset = spread(0.0_wp, 1, n)
       allocate (growth%k(3, n), growth%k_twice(3, n), growth%rate(n), growth%kink(n), &
-         growth%intensity(n), &
+         growth%twist(n), growth%intensity(n), &
          growth%toughness(n), growth%rayleigh(n), growth%dilatational(n), growth%speed(n), &
          source=0.0_wp)
       allocate (growth%outside(n), growth%waits(n), source=.false.)
@@ -104,7 +106,7 @@ contains
       real(wp), intent(in) :: k(:, :)   !! (3,nn) modes I II III
       real(wp), intent(in) :: rate(:)   !! (nn) energy release rate
       real(wp), intent(in) :: time      !! [time]
-      real(wp) :: part, twist
+      real(wp) :: part
       integer :: i
 
       part = 1.0_wp
@@ -123,7 +125,7 @@ contains
             growth%k_twice(:, i) = k(:, i)
          end if
          call growth%criterion%judge(2*growth%k(:, i) - growth%k_twice(:, i), growth%kink(i), &
-            twist, growth%intensity(i))
+            growth%twist(i), growth%intensity(i))
       end do
    end subroutine take_intensities
 
@@ -150,7 +152,7 @@ contains
       call note_energy(growth, crack%front, way)
    end subroutine advance_fronts
 
-   !> Nodes outside take way and kink of the nearest node of their chain that is inside.
+   !> Nodes outside take way, kink and twist of the nearest node of their chain that is inside.
    subroutine follow_inside(growth, front, way)
       type(growth_t), intent(inout) :: growth
       type(front_t), intent(in) :: front
@@ -180,6 +182,7 @@ contains
             if (other == 0) cycle
             way(i) = way(other)
             growth%kink(i) = growth%kink(other)
+            growth%twist(i) = growth%twist(other)
          end do
       end do
    end subroutine follow_inside
@@ -221,16 +224,20 @@ contains
       end do
    end function is_due
 
-   !> Way of each node since the last re-meshing, in its direction.
+   !> Way of each node since the last re-meshing, in its direction, with the rise of the row by the
+   !> criterion's twist.
    pure function growth_vectors(growth, crack) result(advance)
       type(growth_t), intent(in) :: growth
       type(crack_t), intent(in) :: crack
-      real(wp) :: advance(3, size(crack%offset))
+      real(wp) :: advance(3, size(crack%offset)), rise(size(crack%offset)), c, s
       integer :: i
 
+      rise = rise_of_rows(crack%front, crack%offset, growth%twist, growth%outside)
       do i = 1, size(crack%offset)
-         advance(:, i) = crack%offset(i)*(cos(growth%kink(i))*crack%front%e1(:, i) &
-            + sin(growth%kink(i))*crack%front%e2(:, i))
+         c = cos(growth%kink(i))
+         s = sin(growth%kink(i))
+         advance(:, i) = (crack%offset(i)*c - rise(i)*s)*crack%front%e1(:, i) &
+            + (crack%offset(i)*s + rise(i)*c)*crack%front%e2(:, i)
       end do
    end function growth_vectors
 
@@ -248,11 +255,12 @@ contains
 
       before = growth
       n = grown%front%node_count
-      deallocate (growth%k, growth%k_twice, growth%rate, growth%kink, growth%intensity, &
+      deallocate (growth%k, growth%k_twice, growth%rate, growth%kink, growth%twist, &
+         growth%intensity, &
          growth%toughness, &
          growth%rayleigh, growth%dilatational, growth%speed, growth%outside, growth%waits)
       allocate (growth%k(3, n), growth%k_twice(3, n), growth%rate(n), growth%kink(n), &
-         growth%intensity(n), &
+         growth%twist(n), growth%intensity(n), &
          growth%toughness(n), growth%rayleigh(n), growth%dilatational(n), growth%speed(n), &
          offset(n), source=0.0_wp)
       allocate (growth%outside(n), growth%waits(n), source=.false.)
@@ -271,6 +279,7 @@ contains
          if (.not. stayed) cycle
          offset(i) = old(a)
          growth%kink(i) = before%kink(a)
+         growth%twist(i) = before%twist(a)
          growth%waits(i) = before%waits(a) .or. grown%met(a)
       end do
       growth%increments = growth%increments + 1

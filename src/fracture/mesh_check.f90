@@ -21,6 +21,7 @@ module xmpm_mesh_check
       integer :: degenerate = 0               !! triangles without area
       integer :: folded = 0                   !! edges where the surface turns back on itself
       integer :: overlapping = 0              !! new triangles that pass through or cover another
+      logical, allocatable :: faulty(:)       !! (new triangles) which are not sound
    end type mesh_quality_t
 
    real(wp), parameter :: flat_shape = 1.0e-3_wp   !! shape of a degenerate triangle
@@ -41,6 +42,7 @@ contains
 
       fault = ''
       quality%triangles = surface%triangle_count - first + 1
+      allocate (quality%faulty(max(0, quality%triangles)), source=.false.)
       if (quality%triangles < 1) return
       quality%area = sum(surface%area(first:))
       call measure_shapes(surface, first, quality, fault)
@@ -68,6 +70,7 @@ contains
             quality%worst_shape = min(quality%worst_shape, shape)
             if (shape > flat_shape) cycle
             quality%degenerate = quality%degenerate + 1
+            quality%faulty(t - first + 1) = .true.
             if (len(fault) == 0) fault = 'is degenerate, at '//to_text(x(:, 1))
          end associate
       end do
@@ -88,6 +91,8 @@ contains
             quality%sharpest_fold = max(quality%sharpest_fold, acos(max(-1.0_wp, min(1.0_wp, c))))
             if (c > turned_back) cycle
             quality%folded = quality%folded + 1
+            if (t(1) >= first) quality%faulty(t(1) - first + 1) = .true.
+            if (t(2) >= first) quality%faulty(t(2) - first + 1) = .true.
             if (len(fault) == 0) fault = 'is folded, at '// &
                to_text(surface%x(:, surface%edge(1, e)))
          end associate
@@ -115,6 +120,7 @@ contains
          hit = first_overlap(surface, tree, box, t)
          if (hit == 0) cycle
          quality%overlapping = quality%overlapping + 1
+         quality%faulty(t - first + 1) = .true.
          if (len(fault) == 0) fault = 'meets another part of the surface, at '// &
             to_text(surface%x(:, surface%tri(1, t)))
       end do

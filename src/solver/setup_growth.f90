@@ -86,6 +86,10 @@ contains
       call choose_law(block, growth)
       call read_toughness(deck, block, growth)
       call check_fracture(m, deck, block, growth)
+      ! Where the domains of two fronts touch, K is that of neither alone.
+      if (growth%needs_intensity .and. allocated(m%fracture%shape%radius)) then
+         growth%limits%meeting = 2*maxval(m%fracture%shape%radius)
+      end if
       call start_growth(growth, m%cracks(crack))
       m%growth = [m%growth, growth]
       call know_nodes(m, size(m%growth), failure)

@@ -10,7 +10,8 @@ program test_growth
    use xmpm_prescribed, only: prescribed_speed
    use xmpm_front_line, only: limits_for
    use xmpm_material_test, only: material_test_t
-   use xmpm_grow_surface, only: grown_t, grow_surface, find_front
+   use xmpm_front_search, only: find_front
+   use xmpm_grow_surface, only: grown_t, grow_surface
    use xmpm_growth, only: growth_t, region_t, start_growth, advance_fronts, is_due, &
       growth_vectors, renew_growth, take_intensities, toughness_at
    use everywhere, only: everywhere_t

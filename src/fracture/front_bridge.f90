@@ -1,0 +1,115 @@
+!> Surface between fronts that have met, and over the last rest inside a closed one.
+module xmpm_front_bridge
+   use xmpm_kinds, only: wp
+   use xmpm_front, only: front_t
+   use xmpm_front_line, only: front_limits_t
+   use xmpm_front_strip, only: strip_between
+   use xmpm_surface_draft, only: draft_t, add_vertex, add_triangles
+   implicit none
+   private
+
+   public :: join_chains, close_chain
+
+contains
+
+   !> Rows of triangles between two fronts that have met, no longer than segments may be.
+   subroutine join_chains(front, chain, other, limits, draft)
+      type(front_t), intent(in) :: front             !! fronts of one crack
+      integer, intent(in) :: chain, other            !! the two of them
+      type(front_limits_t), intent(in) :: limits
+      type(draft_t), intent(inout) :: draft          !! gets the triangles
+      integer, allocatable :: tri(:, :), row(:), next(:), far(:)
+      real(wp) :: part
+      integer :: i, k, first, last, rows, from
+
+      first = front%chain_offset(chain)
+      last = front%chain_offset(chain + 1) - 1
+      far = [(front%vertex(i), i=front%chain_offset(other + 1) - 1, front%chain_offset(other), -1)]
+      row = front%vertex(first:last)
+      rows = 1
+      if (.not. front%closed(chain)) rows = max(1, nint(mean_gap(front, chain, far, draft) &
+         /limits%longest))
+      do k = 1, rows
+         next = far
+         part = 1.0_wp/real(rows - k + 1, wp)
+         if (k < rows) next = row
+         do i = 1, merge(size(row), 0, k < rows)
+            if (any(far == row(i))) cycle
+            from = first + i - 1
+            call add_vertex(front, draft%x(:, row(i)) + part*(opposite(row, i, far, draft) &
+               - draft%x(:, row(i))), [from, from], 0.0_wp, draft)
+            next(i) = size(draft%x, 2)
+         end do
+         call strip_between(row, next, front%closed(chain), draft%x, front%e2(:, first:last), tri)
+         call add_triangles(tri, draft)
+         row = next
+      end do
+   end subroutine join_chains
+
+   !> Mean distance between the nodes of a chain and the places opposite to them.
+   pure function mean_gap(front, chain, far, draft) result(gap)
+      type(front_t), intent(in) :: front
+      integer, intent(in) :: chain, far(:)
+      type(draft_t), intent(in) :: draft
+      real(wp) :: gap
+      integer :: i, n
+
+      n = front%chain_offset(chain + 1) - front%chain_offset(chain)
+      gap = 0
+      associate (row => front%vertex(front%chain_offset(chain):front%chain_offset(chain + 1) - 1))
+         do i = 1, n
+            gap = gap + norm2(opposite(row, i, far, draft) - draft%x(:, row(i)))/real(n, wp)
+         end do
+      end associate
+   end function mean_gap
+
+   !> The place of a line at the same part of its length as a vertex of another has.
+   pure function opposite(row, i, far, draft) result(x)
+      integer, intent(in) :: row(:), i, far(:)
+      type(draft_t), intent(in) :: draft
+      real(wp) :: x(3), way, step
+      integer :: k
+
+      way = length_of(draft%x(:, row(:i)))/max(length_of(draft%x(:, row)), tiny(1.0_wp)) &
+         *length_of(draft%x(:, far))
+      do k = 2, size(far)
+         step = norm2(draft%x(:, far(k)) - draft%x(:, far(k - 1)))
+         if (way <= step) exit
+         way = way - step
+      end do
+      k = min(k, size(far))
+      way = min(1.0_wp, way/max(step, tiny(1.0_wp)))
+      x = (1 - way)*draft%x(:, far(k - 1)) + way*draft%x(:, far(k))
+      if (i == size(row)) x = draft%x(:, far(size(far)))
+   end function opposite
+
+   pure function length_of(x) result(length)
+      real(wp), intent(in) :: x(:, :)
+      real(wp) :: length
+      integer :: i
+
+      length = 0
+      do i = 2, size(x, 2)
+         length = length + norm2(x(:, i) - x(:, i - 1))
+      end do
+   end function length_of
+
+   !> Triangles from a small closed front to its centre.
+   subroutine close_chain(front, chain, draft)
+      type(front_t), intent(in) :: front       !! fronts of one crack
+      integer, intent(in) :: chain             !! a closed one
+      type(draft_t), intent(inout) :: draft    !! gets the triangles
+      integer :: i, first, last, n, centre
+
+      first = front%chain_offset(chain)
+      last = front%chain_offset(chain + 1) - 1
+      n = last - first + 1
+      call add_vertex(front, sum(front%x(:, first:last), 2)/real(n, wp), [first, first + n/2], &
+         0.5_wp, draft)
+      centre = size(draft%x, 2)
+      do i = first, last
+         call add_triangles(reshape([front%vertex(i), front%vertex(merge(first, i + 1, &
+            i == last)), centre], [3, 1]), draft)
+      end do
+   end subroutine close_chain
+end module xmpm_front_bridge
