@@ -13,9 +13,10 @@
 module xmpm_domain_integral
    use xmpm_kinds, only: wp, pi
    use xmpm_front, only: front_t
+   use xmpm_storage, only: lanes
    use xmpm_samples, only: sample_t
    use xmpm_front_points, only: front_points_t, window_at, direction_at, same_part
-   use xmpm_near_tip, only: near_tip_fields, line_force_field, strain_of
+   use xmpm_domain_lanes, only: view_t, look, aim, flux_along, strain_along
    implicit none
    private
 
@@ -42,6 +43,18 @@ module xmpm_domain_integral
       real(wp), allocatable :: along(:, :)           !! (5,n) fit of the strain along the front
    end type domain_sums_t
 
+   !> Samples that wait for a point to see them.
+   type :: batch_t
+      integer :: n = 0
+      integer :: sample(lanes) = 0
+   end type batch_t
+
+   !> Sums of one point in lanes.
+   type :: lane_sums_t
+      real(wp), allocatable :: part(:, :, :)   !! (lanes,6,nr) J, four interactions, volume
+      real(wp) :: mean(lanes, 9) = 0           !! material (4), along (5)
+   end type lane_sums_t
+
 contains
 
    !> Room for the sums of n points, all 0.
@@ -62,19 +75,69 @@ contains
       real(wp), intent(in) :: speed(:)      !! (n) of the front at the points [length/time]
       real(wp), intent(in) :: drift(:, :)   !! (3,n) velocity of the material there [length/time]
       type(domain_sums_t), intent(inout) :: sums
-      integer, allocatable :: near(:)
-      integer :: i, k, n, m
+      type(batch_t) :: batch(points%n)
+      type(lane_sums_t) :: lane_sums(points%n)
+      real(wp), allocatable :: weights(:, :, :)
+      integer :: near(points%n), i, k, n, m
 
-      allocate (near(points%n))
+      allocate (weights(2, size(shape%radius), size(samples)))
+      do m = 1, points%n
+         allocate (lane_sums(m)%part(lanes, 6, size(shape%radius)), source=0.0_wp)
+      end do
       do i = 1, size(samples)
+         if (samples(i)%r >= maxval(shape%radius)) cycle
          call points_near(front, points, samples(i), shape%reach, near, n)
+         do k = 1, size(shape%radius)
+            call profile(samples(i)%r, shape%inner, shape%radius(k), weights(1, k, i), &
+               weights(2, k, i))
+         end do
          do k = 1, n
             m = near(k)
-            if (.not. same_part(front, points, m, samples(i)%edge)) cycle
-            call add_sample(samples(i), points, m, shape, speed(m), drift(:, m), sums)
+            if (.not. sees(front, points, m, shape%half_width, samples(i))) cycle
+            batch(m)%n = batch(m)%n + 1
+            batch(m)%sample(batch(m)%n) = i
+            if (batch(m)%n < lanes) cycle
+            call add_batch(samples, weights, batch(m)%sample, points, m, shape, speed(m), &
+               drift(:, m), lane_sums(m))
+            batch(m)%n = 0
          end do
       end do
+      do m = 1, points%n
+         if (batch(m)%n > 0) call add_batch(samples, weights, batch(m)%sample(:batch(m)%n), &
+            points, m, shape, speed(m), drift(:, m), lane_sums(m))
+         call add_lane_sums(lane_sums(m), m, sums)
+      end do
    end subroutine sum_domains
+
+   !> Whether a sample is in the window of a point and belongs to its part of the front.
+   pure function sees(front, points, m, half_width, s)
+      type(front_t), intent(in) :: front
+      type(front_points_t), intent(in) :: points
+      integer, intent(in) :: m                !! point
+      real(wp), intent(in) :: half_width      !! of the window [length]
+      type(sample_t), intent(in) :: s
+      logical :: sees
+
+      sees = abs((s%x(1) - points%x(1, m))*points%frame(1, 3, m) &
+         + (s%x(2) - points%x(2, m))*points%frame(2, 3, m) &
+         + (s%x(3) - points%x(3, m))*points%frame(3, 3, m)) < half_width
+      if (sees) sees = same_part(front, points, m, s%edge)
+   end function sees
+
+   !> Sums over the lanes of one point.
+   pure subroutine add_lane_sums(lane_sums, m, sums)
+      type(lane_sums_t), intent(in) :: lane_sums
+      integer, intent(in) :: m
+      type(domain_sums_t), intent(inout) :: sums
+      real(wp) :: part(6, size(sums%j, 1))
+
+      part = sum(lane_sums%part, dim=1)
+      sums%j(:, m) = sums%j(:, m) + part(1, :)
+      sums%interaction(:, :, m) = sums%interaction(:, :, m) + part(2:5, :)
+      sums%volume(:, m) = sums%volume(:, m) + part(6, :)
+      sums%material(:, m) = sums%material(:, m) + sum(lane_sums%mean(:, :4), dim=1)
+      sums%along(:, m) = sums%along(:, m) + sum(lane_sums%mean(:, 5:), dim=1)
+   end subroutine add_lane_sums
 
    !> Points within reach of a sample's place on the front, along the front to both sides.
    pure subroutine points_near(front, points, s, reach, near, n)
@@ -84,16 +147,20 @@ contains
       real(wp), intent(in) :: reach          !! [length]
       integer, intent(inout) :: near(:)      !! filled up to n
       integer, intent(out) :: n
+      real(wp) :: d(3)
       integer :: node, edge, way
 
       n = 0
       do way = 2, 1, -1
          node = front%edge_node(way, s%edge)
          do while (n < size(near))
-            if (norm2(s%foot - points%x(:, node)) > reach) exit
+            d = s%foot - points%x(:, node)
+            if (d(1)*d(1) + d(2)*d(2) + d(3)*d(3) > reach*reach) exit
             if (n > 0) then
                if (node == near(1) .and. way == 2) return
-               if (way == 1 .and. any(near(:n) == node)) return
+               if (way == 1 .and. front%closed(points%chain(node))) then
+                  if (any(near(:n) == node)) return
+               end if
             end if
             n = n + 1
             near(n) = node
@@ -104,106 +171,123 @@ contains
       end do
    end subroutine points_near
 
-   !> Add one sample to one point.
-   pure subroutine add_sample(s, points, m, shape, speed, drift, sums)
-      type(sample_t), intent(in) :: s
+   !> Add samples to one point.
+   pure subroutine add_batch(samples, weights, chosen, points, m, shape, speed, drift, lane_sums)
+      type(sample_t), intent(in) :: samples(:)
+      real(wp), intent(in) :: weights(:, :, :)      !! (2,nr,samples) w and dw/dr
+      integer, intent(in) :: chosen(:)              !! one for each lane, or less
       type(front_points_t), intent(in) :: points
       integer, intent(in) :: m
       type(domain_shape_t), intent(in) :: shape
       real(wp), intent(in) :: speed, drift(3)
-      type(domain_sums_t), intent(inout) :: sums
-      real(wp) :: flux(3, 5), source(5), across(5), tilt(5), value(5), d(3), g(3)
-      real(wp) :: l, dl, w, dw, fade
-      integer :: k
+      type(lane_sums_t), intent(inout) :: lane_sums
+      type(view_t) :: view
+      real(wp) :: across(lanes, 5), rest(lanes, 6), tilt(lanes, 5), l(lanes), fade(lanes)
+      real(wp) :: along(lanes, 3)
+      integer :: i, k
 
-      d = matmul(s%x - points%x(:, m), points%frame(:, :, m))
-      if (abs(d(3)) >= shape%half_width) return
-      call window_at(d(3), shape%half_width, l, dl)
-      call direction_at(points, m, s%x, shape%half_width, g, fade)
-      tilt = 0
-      if (abs(fade) > 0) then
-         call fluxes(s, points, m, d, points%outward(:, m), speed, drift, flux, source)
-         tilt = fade*matmul(points%outward(:, m), flux)
+      call look(samples, chosen, points, m, view)
+      rest = 0
+      call windows(samples, chosen, points, m, shape%half_width, view, l, rest(:, 6), fade, along)
+      if (any(abs(fade) > 0)) then
+         view%g = spread(points%outward(:, m), 1, lanes)
+         call aim(samples, chosen, points, m, speed, drift, view)
+         call flux_along(view, view%g, tilt)
+         do k = 1, 5
+            rest(:, k) = l*fade*view%volume*tilt(:, k)
+         end do
       end if
-      call fluxes(s, points, m, d, g, speed, drift, flux, source)
-      across = matmul(matmul(s%away, points%frame(:, :, m)), flux)
-      do k = size(shape%radius), 1, -1
-         if (s%r >= shape%radius(k)) exit
-         call profile(s%r, shape%inner, shape%radius(k), w, dw)
-         value = s%volume*(dw*l*across + w*dl*flux(3, :) + w*l*tilt) + w*l*source
-         sums%j(k, m) = sums%j(k, m) + value(1)
-         sums%interaction(:, k, m) = sums%interaction(:, k, m) + value(2:)
-         sums%volume(k, m) = sums%volume(k, m) + s%volume*w*l
+      view%g = along
+      call aim(samples, chosen, points, m, speed, drift, view)
+      along = spread([0.0_wp, 0.0_wp, 1.0_wp], 1, lanes)
+      call flux_along(view, along, across)
+      do k = 1, 5
+         rest(:, k) = rest(:, k) + view%volume*rest(:, 6)*across(:, k) + l*view%source(:, k)
       end do
-      sums%material(:, m) = sums%material(:, m) + s%volume*[1.0_wp, s%lambda, s%mu, s%density]
-      if (s%r < shape%inner) sums%along(:, m) = sums%along(:, m) + s%volume*l &
-         *strain_along(s, points%frame(:, :, m), points%turn(:, :, m), d, shape%inner)
-   end subroutine add_sample
+      rest(:, 6) = view%volume*l
+      call flux_along(view, view%away, across)
+      do k = 1, 5
+         across(:, k) = view%volume*l*across(:, k)
+      end do
+      do i = 1, size(shape%radius)
+         call add_radius(weights, chosen, i, across, rest, lane_sums%part(:, :, i))
+      end do
+      lane_sums%mean(:, :4) = lane_sums%mean(:, :4) + view%mean
+      call add_strains(samples, chosen, points, m, shape%inner, l, view, lane_sums%mean(:, 5:))
+   end subroutine add_batch
 
-   !> Products of a fit of the strain along the front, e_33 = a + b g: 1, g, g**2, e_33, g e_33.
-   !>
-   !> On a curved front u_1 of mode I, that grows with r**(1/2), is a strain along it; g has its
-   !> form, and a is what is left at the front.
-   pure function strain_along(s, e, turn, d, inner) result(products)
-      type(sample_t), intent(in) :: s
-      real(wp), intent(in) :: e(3, 3), turn(3, 3)   !! frame, turn of the material
-      real(wp), intent(in) :: d(3), inner           !! place in the frame, length of g [length]
-      real(wp) :: products(5), g, r, strain
-
-      r = norm2(d(:2))
-      g = 0
-      if (r > 0) g = sqrt(0.5_wp*(r + d(1))/inner)*(2 - 2*s%lambda/(s%lambda + s%mu) + 1 - d(1)/r)
-      strain = 1 - dot_product(e(:, 3), matmul(turn, matmul(s%back, e(:, 3))))
-      products = [1.0_wp, g, g*g, strain, g*strain]
-   end function strain_along
-
-   !> Flux and source of J (1), of the interaction with modes I to III (2:4) and with a line force
-   !> (5), in the frame, for a direction of q without a part along e2.
-   pure subroutine fluxes(s, points, m, d, g, speed, drift, flux, source)
-      type(sample_t), intent(in) :: s
+   !> Window, its slope, direction of q and how that fades, in lanes.
+   pure subroutine windows(samples, chosen, points, m, half_width, view, l, slope, fade, direction)
+      type(sample_t), intent(in) :: samples(:)
+      integer, intent(in) :: chosen(:)
       type(front_points_t), intent(in) :: points
-      integer, intent(in) :: m                      !! point
-      real(wp), intent(in) :: d(3)                  !! place in the frame [length]
-      real(wp), intent(in) :: g(3)                  !! direction in the frame
-      real(wp), intent(in) :: speed, drift(3)       !! of the front, of the material [length/time]
-      real(wp), intent(out) :: flux(3, 5)           !! [stress], interaction [stress/K]
-      real(wp), intent(out) :: source(5)            !! [force], interaction [force/K]
-      real(wp) :: e(3, 3), t(3, 3), h(3), f(3), unit_stress(6, 4), slope(3, 4), poisson, energy
+      integer, intent(in) :: m
+      real(wp), intent(in) :: half_width
+      type(view_t), intent(in) :: view
+      real(wp), intent(out) :: l(lanes), slope(lanes), fade(lanes), direction(lanes, 3)
+      real(wp) :: g(3)
+      integer :: i
+
+      l = 0
+      slope = 0
+      fade = 0
+      direction = spread([1.0_wp, 0.0_wp, 0.0_wp], 1, lanes)
+      do i = 1, size(chosen)
+         call window_at(view%d(i, 3), half_width, l(i), slope(i))
+      end do
+      if (.not. abs(points%outward(1, m)) > 0) return
+      do i = 1, size(chosen)
+         call direction_at(points, m, samples(chosen(i))%x, half_width, g, fade(i))
+         direction(i, :) = g
+      end do
+   end subroutine windows
+
+   !> Add the samples within one radius.
+   pure subroutine add_radius(weights, chosen, radius, across, rest, part)
+      real(wp), intent(in) :: weights(:, :, :)
+      integer, intent(in) :: chosen(:), radius      !! samples, number of the radius
+      real(wp), intent(in) :: across(lanes, 5), rest(lanes, 6)
+      real(wp), intent(inout) :: part(lanes, 6)
+      real(wp) :: w(lanes), dw(lanes)
+      integer :: i, k
+
+      w = 0
+      dw = 0
+      do i = 1, size(chosen)
+         w(i) = weights(1, radius, chosen(i))
+         dw(i) = weights(2, radius, chosen(i))
+      end do
+      if (.not. any(w > 0)) return
+      do k = 1, 5
+         part(:, k) = part(:, k) + dw*across(:, k) + w*rest(:, k)
+      end do
+      part(:, 6) = part(:, 6) + w*rest(:, 6)
+   end subroutine add_radius
+
+   !> Add the samples within the inner radius to the fit of the strain along the front.
+   pure subroutine add_strains(samples, chosen, points, m, inner, l, view, along)
+      type(sample_t), intent(in) :: samples(:)
+      integer, intent(in) :: chosen(:)
+      type(front_points_t), intent(in) :: points
+      integer, intent(in) :: m
+      real(wp), intent(in) :: inner, l(lanes)
+      type(view_t), intent(in) :: view
+      real(wp), intent(inout) :: along(lanes, 5)
+      real(wp) :: products(lanes, 5), inside(lanes)
       integer :: k
 
-      e = points%frame(:, :, m)
-      t = matmul(transpose(e), matmul(full(s%stress), e))
-      h = g - matmul(matmul(points%turn(:, :, m), matmul(s%back, matmul(e, g))), e)
-      f = matmul(s%pull, e)
-      flux(:, 1) = matmul(t, h) - s%work*g
-      source(1) = dot_product(f, h)
-      if (speed > 0) call add_kinetic(s, matmul(e, g), g, drift, flux(:, 1), source(1))
-      poisson = 0.5_wp*s%lambda/(s%lambda + s%mu)
-      call near_tip_fields(d(1), d(2), s%side, s%mu, poisson, unit_stress(:, :3), slope(:, :3))
-      call line_force_field(d(1), d(2), s%mu, poisson, unit_stress(:, 4), slope(:, 4))
-      do k = 1, 4
-         energy = product_of(t, strain_of(unit_stress(:, k), s%mu, poisson))
-         flux(:, k + 1) = g(1)*matmul(t, slope(:, k)) + matmul(full(unit_stress(:, k)), h) &
-            - energy*g
-         source(k + 1) = g(1)*dot_product(f, slope(:, k))
+      inside = 0
+      do k = 1, size(chosen)
+         if (samples(chosen(k))%r < inner) inside(k) = 1
       end do
-   end subroutine fluxes
+      if (.not. any(inside > 0)) return
+      call strain_along(view, points, m, inner, products)
+      do k = 1, 5
+         along(:, k) = along(:, k) + inside*l*products(:, k)
+      end do
+   end subroutine add_strains
 
-   !> Kinetic energy of a moving front: velocity relative to the material at the front.
-   pure subroutine add_kinetic(s, along, g, drift, flux, source)
-      type(sample_t), intent(in) :: s
-      real(wp), intent(in) :: along(3), g(3)   !! direction of q in space, in the frame
-      real(wp), intent(in) :: drift(3)
-      real(wp), intent(inout) :: flux(3)       !! [stress]
-      real(wp), intent(inout) :: source        !! [force]
-      real(wp) :: v(3)
-
-      v = s%v - drift
-      flux = flux - 0.5_wp*s%density*sum(v*v)*g
-      source = source - s%volume*s%density*dot_product(v, matmul(s%rate, along))
-   end subroutine add_kinetic
-
-   !> w and dw/dr: 1 up to the inner radius, then a cosine to 0.
+   !> w and dw/dr: 1 up to the inner radius, then a cosine to 0 at the outer one.
    pure subroutine profile(r, inner, outer, w, dw)
       real(wp), intent(in) :: r, inner, outer   !! [length]
       real(wp), intent(out) :: w, dw            !! 0 to 1, [1/length]
@@ -212,6 +296,8 @@ contains
       w = 1
       dw = 0
       if (r <= inner) return
+      w = 0
+      if (r >= outer) return
       z = pi*(r - inner)/(outer - inner)
       w = 0.5_wp*(1 + cos(z))
       dw = -0.5_wp*pi/(outer - inner)*sin(z)
@@ -235,13 +321,4 @@ contains
       t(:, 2) = [s(4), s(2), s(5)]
       t(:, 3) = [s(6), s(5), s(3)]
    end function full
-
-   !> t : e for a symmetric e given as 11 22 33 12 23 13.
-   pure function product_of(t, e) result(product)
-      real(wp), intent(in) :: t(3, 3), e(6)
-      real(wp) :: product
-
-      product = t(1, 1)*e(1) + t(2, 2)*e(2) + t(3, 3)*e(3) &
-                + 2*(t(1, 2)*e(4) + t(2, 3)*e(5) + t(1, 3)*e(6))
-   end function product_of
 end module xmpm_domain_integral

@@ -178,7 +178,9 @@ contains
       integer, intent(in) :: i, edge
       logical :: same
 
-      same = dot_product(points%frame(:, 1, i), front%edge_e1(:, edge)) > turned
+      same = points%frame(1, 1, i)*front%edge_e1(1, edge) &
+         + points%frame(2, 1, i)*front%edge_e1(2, edge) &
+         + points%frame(3, 1, i)*front%edge_e1(3, edge) > turned
    end function same_part
 
    pure subroutine pull_back(front, points, node, inner, way, beyond)

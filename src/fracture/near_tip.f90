@@ -5,86 +5,82 @@ module xmpm_near_tip
    implicit none
    private
 
-   public :: near_tip_fields, line_force_field, strain_of
+   public :: unit_states, strain_of
 
 contains
 
-   !> Stress and u_i,1 of the three modes at a point, each for an intensity factor of one.
+   !> Stress and u_i,1 at n places: of modes I and II, each for an intensity factor of one, and of a
+   !> unit force per length along x1 on the front (Kfouri 1986), the auxiliary state of the
+   !> T-stress; and of mode III.
    !>
    !> Williams' series, first term (for example Anderson, Fracture Mechanics, tables 2.1 and 2.2).
    !> Behind the front the side, not the sign of x2, tells which face is near. On the front itself
    !> there is no field: 0.
-   pure subroutine near_tip_fields(x1, x2, side, mu, poisson, stress, gradient)
-      real(wp), intent(in) :: x1, x2          !! ahead of and above the front [length]
-      real(wp), intent(in) :: side            !! 1 above, -1 below the crack
-      real(wp), intent(in) :: mu, poisson     !! shear modulus [stress], Poisson's ratio
-      real(wp), intent(out) :: stress(6, 3)   !! 11 22 33 12 23 13 of modes I, II, III
-      real(wp), intent(out) :: gradient(3, 3) !! u_i,1 of the modes
-      real(wp) :: r, cosine, sine, c, s, c3, s3, f, kappa, scale
+   pure subroutine unit_states(n, x1, x2, side, mu, poisson, plane, shear)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: x1(n), x2(n)         !! ahead of and above the front [length]
+      real(wp), intent(in) :: side(n)              !! 1 above, -1 below the crack
+      real(wp), intent(in) :: mu(n), poisson(n)    !! shear modulus [stress], Poisson's ratio
+      real(wp), intent(out) :: plane(n, 6, 3)      !! 11 22 33 12, u_1,1 u_2,1 of I, II, force
+      real(wp), intent(out) :: shear(n, 3)         !! 23 13, u_3,1 of III
+      real(wp) :: r, live, cosine, sine, ahead, a, b, c, s, c3, s3, f, kappa, scale
+      integer :: i
 
-      stress = 0
-      gradient = 0
-      r = sqrt(x1*x1 + x2*x2)
-      if (.not. r > 0) return
-      cosine = x1/r
-      sine = x2/r
-      if (cosine > 0) then
-         c = sqrt(0.5_wp*(1 + cosine))
-         s = 0.5_wp*sine/c
-      else
-         s = sign(sqrt(0.5_wp*(1 - cosine)), side)
-         c = 0.5_wp*sine/s
-      end if
-      c3 = c*(4*c*c - 3)
-      s3 = s*(3 - 4*s*s)
-      f = 1/sqrt(2*pi*r)
-      kappa = 3 - 4*poisson
-      stress(1, 1:2) = [f*c*(1 - s*s3), -f*s*(2 + c*c3)]
-      stress(2, 1:2) = [f*c*(1 + s*s3), f*s*c*c3]
-      stress(3, 1:2) = poisson*(stress(1, 1:2) + stress(2, 1:2))
-      stress(4, 1:2) = [f*s*c*c3, f*c*(1 - s*s3)]
-      stress(5, 3) = f*c
-      stress(6, 3) = -f*s
-      scale = 0.5_wp/mu
-      gradient(1, 1:2) = scale*(stress(1, 1:2) - poisson*(stress(1, 1:2) + stress(2, 1:2)))
-      gradient(2, 1) = slope(s*(kappa + 1 - 2*c*c), 0.5_wp*c*(kappa + 1 - 2*c*c) + 2*s*s*c)
-      gradient(2, 2) = slope(-c*(kappa - 1 - 2*s*s), 0.5_wp*s*(kappa - 1 - 2*s*s) + 2*s*c*c)
-      gradient(3, 3) = stress(6, 3)/mu
+      !$omp simd private(r, live, cosine, sine, ahead, a, b, c, s, c3, s3, f, kappa, scale)
+      do i = 1, n
+         r = sqrt(x1(i)*x1(i) + x2(i)*x2(i))
+         live = 0.5_wp + sign(0.5_wp, r - tiny(r))
+         r = r + (1 - live)
+         cosine = x1(i)/r
+         sine = x2(i)/r
+         ahead = 0.5_wp + sign(0.5_wp, cosine)
+         a = sqrt(0.5_wp*(1 + abs(cosine)))
+         b = 0.5_wp*sine/a
+         c = ahead*a + (1 - ahead)*side(i)*b
+         s = ahead*b + (1 - ahead)*side(i)*a
+         c3 = c*(4*c*c - 3)
+         s3 = s*(3 - 4*s*s)
+         f = live/sqrt(2*pi*r)
+         kappa = 3 - 4*poisson(i)
+         scale = 0.5_wp/mu(i)
+         plane(i, 1, 1) = f*c*(1 - s*s3)
+         plane(i, 2, 1) = f*c*(1 + s*s3)
+         plane(i, 4, 1) = f*s*c*c3
+         plane(i, 1, 2) = -f*s*(2 + c*c3)
+         plane(i, 2, 2) = plane(i, 4, 1)
+         plane(i, 4, 2) = plane(i, 1, 1)
+         ! x1 derivative of r**(1/2) g(theta)/(2 mu (2 pi)**(1/2)), from g and dg/dtheta
+         plane(i, 6, 1) = scale*f*(0.5_wp*cosine*s*(kappa + 1 - 2*c*c) &
+            - sine*(0.5_wp*c*(kappa + 1 - 2*c*c) + 2*s*s*c))
+         plane(i, 6, 2) = -scale*f*(0.5_wp*cosine*c*(kappa - 1 - 2*s*s) &
+            + sine*(0.5_wp*s*(kappa - 1 - 2*s*s) + 2*s*c*c))
+         shear(i, 1) = f*c
+         shear(i, 2) = -f*s
+         shear(i, 3) = -2*scale*f*s
+         f = -live/(pi*r)
+         plane(i, 1, 3) = f*cosine*cosine*cosine
+         plane(i, 2, 3) = f*cosine*sine*sine
+         plane(i, 4, 3) = f*cosine*cosine*sine
+         plane(i, 6, 3) = scale*f*sine*(poisson(i) - sine*sine)
+      end do
+      call finish_plane(n, mu, poisson, plane)
+   end subroutine unit_states
 
-   contains
+   !> Stress 33 and u_1,1 of states of plane strain.
+   pure subroutine finish_plane(n, mu, poisson, plane)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: mu(n), poisson(n)
+      real(wp), intent(inout) :: plane(n, 6, 3)
+      integer :: k, i
 
-      !> x1 derivative of r**(1/2) g(theta)/(2 mu (2 pi)**(1/2)).
-      pure function slope(g, dg) result(d)
-         real(wp), intent(in) :: g, dg
-         real(wp) :: d
-
-         d = scale*f*(0.5_wp*cosine*g - sine*dg)
-      end function slope
-   end subroutine near_tip_fields
-
-   !> Stress and u_i,1 of a unit force per length along x1 on the front, in plane strain: the
-   !> auxiliary state of the T-stress (Kfouri 1986).
-   pure subroutine line_force_field(x1, x2, mu, poisson, stress, slope)
-      real(wp), intent(in) :: x1, x2          !! ahead of and above the front [length]
-      real(wp), intent(in) :: mu, poisson     !! shear modulus [stress], Poisson's ratio
-      real(wp), intent(out) :: stress(6)      !! 11 22 33 12 23 13 [1/length]
-      real(wp), intent(out) :: slope(3)       !! u_i,1 [1/(length stress)]
-      real(wp) :: r, c, s, f
-
-      stress = 0
-      slope = 0
-      r = sqrt(x1*x1 + x2*x2)
-      if (.not. r > 0) return
-      c = x1/r
-      s = x2/r
-      f = -1/(pi*r)
-      stress(1) = f*c**3
-      stress(2) = f*c*s*s
-      stress(3) = poisson*f*c
-      stress(4) = f*c*c*s
-      slope(1) = 0.5_wp/mu*f*c*(c*c - poisson)
-      slope(2) = 0.5_wp/mu*f*s*(poisson - s*s)
-   end subroutine line_force_field
+      do k = 1, 3
+         !$omp simd
+         do i = 1, n
+            plane(i, 3, k) = poisson(i)*(plane(i, 1, k) + plane(i, 2, k))
+            plane(i, 5, k) = 0.5_wp/mu(i)*(plane(i, 1, k) - plane(i, 3, k))
+         end do
+      end do
+   end subroutine finish_plane
 
    !> Strain of a stress, tensor components in the order 11 22 33 12 23 13.
    pure function strain_of(stress, mu, poisson) result(strain)

@@ -3,7 +3,7 @@ module xmpm_samples
    use xmpm_kinds, only: wp
    use xmpm_lattice, only: bin_corner
    use xmpm_grid, only: grid_t
-   use xmpm_storage, only: particles_t, lanes, bin_of_chunk, is_traced, c_x, c_v, c_m, c_vol, c_s, &
+   use xmpm_storage, only: particles_t, lanes, bin_of_chunk, c_x, c_v, c_m, c_vol, c_s, &
       n_hot, n_near, near_crack, near_psi, n_trace, trace_f, trace_work
    use xmpm_kernels, only: kernels_t
    use xmpm_sided, only: sided_t
@@ -56,38 +56,48 @@ contains
       type(load_t), intent(in) :: loads(:)
       real(wp), intent(in) :: time                            !! of the loads [time]
       type(sample_t), allocatable, intent(out) :: samples(:)
-      type(front_place_t) :: place
-      real(wp) :: centre(3), margin
-      integer :: c, n
+      integer, allocatable :: near(:)
+      integer :: i, n
 
-      allocate (samples(256))
+      near = chunks_near(crack%front, reach, grid, p)
+      allocate (samples(sum(p%count(near))))
       n = 0
-      margin = 0.9_wp*grid%lattice%size
-      do c = 1, p%n_chunks
-         if (p%count(c) == 0) cycle
-         if (.not. is_traced(p, c)) cycle
-         centre = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) &
-            + 0.5_wp*grid%lattice%size
-         place = front_place_t()
-         call nearest_on_front(crack%front, centre, reach + margin, place)
-         if (place%edge == 0) cycle
-         if (n + lanes > size(samples)) call make_room(samples)
-         call sample_chunk(crack%front, number, reach, grid, p, c, bodies, kernels, sided, loads, &
-            time, samples, n)
+      do i = 1, size(near)
+         call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, sided, &
+            loads, time, samples, n)
       end do
       samples = samples(:n)
    end subroutine collect_samples
 
-   pure subroutine make_room(samples)
-      type(sample_t), allocatable, intent(inout) :: samples(:)
-      type(sample_t), allocatable :: more(:)
+   !> The traced chunks that may have particles within reach of a front.
+   pure function chunks_near(front, reach, grid, p) result(near)
+      type(front_t), intent(in) :: front
+      real(wp), intent(in) :: reach            !! [length]
+      type(grid_t), intent(in) :: grid
+      type(particles_t), intent(in) :: p
+      integer, allocatable :: near(:)
+      integer :: chosen(count(p%attached(:p%n_chunks) > 0)), c, n
+      type(front_place_t) :: place
+      real(wp) :: centre(3), margin
 
-      allocate (more(2*size(samples)))
-      more(:size(samples)) = samples
-      call move_alloc(more, samples)
-   end subroutine make_room
+      n = 0
+      margin = 0.9_wp*grid%lattice%size
+      if (p%trace >= 0) then
+         do c = 1, p%n_chunks
+            if (p%attached(c) == 0) cycle
+            if (p%count(c) == 0) cycle
+            centre = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) &
+               + 0.5_wp*grid%lattice%size
+            call nearest_on_front(front, centre, reach + margin, place)
+            if (place%edge == 0) cycle
+            n = n + 1
+            chosen(n) = c
+         end do
+      end if
+      near = chosen(:n)
+   end function chunks_near
 
-   !> Append the particles of one chunk.
+   !> Append the particles of one chunk, for which there is room.
    subroutine sample_chunk(front, number, reach, grid, p, c, bodies, kernels, sided, loads, time, &
          samples, n)
       type(front_t), intent(in) :: front
@@ -101,7 +111,6 @@ contains
       type(load_t), intent(in) :: loads(:)
       type(sample_t), intent(inout) :: samples(:)
       integer, intent(inout) :: n
-      type(sample_t) :: s
       real(wp) :: pull(lanes, 3), rate(lanes, 9), load(lanes, 3)
       logical :: inside
       integer :: i
@@ -112,23 +121,26 @@ contains
          pull = pull - load
       end do
       do i = 1, p%count(c)
-         call read_lane(p, c, i, number, s)
-         if (.not. abs(s%back(1, 1)) > 0) cycle
-         call place_sample(front, reach, s, inside)
-         if (.not. inside) cycle
-         select type (law => bodies%laws(bodies%law_of(p%body(c)))%law)
-         type is (elastic_t)
-            s%lambda = law%lambda
-            s%mu = law%mu
-         end select
-         s%pull = pull(i, :)
-         s%rate = rows_of(rate(i, :))
+         associate (s => samples(n + 1))
+            call read_lane(p, c, i, number, s)
+            if (.not. any(abs(s%back) > 0)) cycle
+            call place_sample(front, reach, s, inside)
+            if (.not. inside) cycle
+            s%back = inverse(s%back)
+            select type (law => bodies%laws(bodies%law_of(p%body(c)))%law)
+            type is (elastic_t)
+               s%lambda = law%lambda
+               s%mu = law%mu
+            end select
+            s%pull = pull(i, :)
+            s%rate = rows_of(rate(i, :))
+         end associate
          n = n + 1
-         samples(n) = s
       end do
    end subroutine sample_chunk
 
-   !> What a particle carries itself; `back` stays 0 for one that is not traced.
+   !> What a particle carries itself; `back` holds its deformation gradient, 0 where it is not
+   !> traced.
    pure subroutine read_lane(p, c, lane, number, s)
       type(particles_t), intent(in) :: p
       integer, intent(in) :: c, lane, number
@@ -146,7 +158,7 @@ contains
       s%density = q(c_m)/q(c_vol)
       s%stress = q(c_s:c_s + 5)
       s%work = trace(trace_work)/q(c_vol)
-      s%back = inverse(rows_of(trace(trace_f:trace_f + 8)))
+      s%back = rows_of(trace(trace_f:trace_f + 8))
       s%side = 0
       do k = 0, n_near*(p%slots - 1), n_near
          if (nint(p%near(lane, k + near_crack, r)) /= number) cycle

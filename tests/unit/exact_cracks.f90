@@ -7,7 +7,8 @@ module exact_cracks
    use xmpm_front, only: front_test_points, mark_front
    use xmpm_crack, only: crack_t
    use xmpm_samples, only: sample_t, place_sample
-   use xmpm_near_tip, only: near_tip_fields, strain_of
+   use xmpm_near_tip, only: strain_of
+   use near_tip_states, only: near_tip_fields
    use penny_field, only: penny_at
    use running_tip, only: tip_at
    implicit none

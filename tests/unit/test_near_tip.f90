@@ -1,7 +1,8 @@
 !> The near-tip fields of the three modes: they are elastic states of a cracked body.
 program test_near_tip
    use xmpm_kinds, only: wp, pi
-   use xmpm_near_tip, only: near_tip_fields, strain_of
+   use xmpm_near_tip, only: strain_of
+   use near_tip_states, only: near_tip_fields
    use testing, only: suite_t, check, check_close, finish
    implicit none
    real(wp), parameter :: mu = 3.0_wp, poisson = 0.298_wp

@@ -6,7 +6,7 @@ program test_running_front
    use xmpm_samples, only: sample_t
    use xmpm_front_points, only: front_points_t, list_points, window_length
    use xmpm_domain_integral, only: domain_sums_t, domain_shape_t, sum_domains, clear_sums
-   use xmpm_near_tip, only: near_tip_fields
+   use near_tip_states, only: near_tip_fields
    use xmpm_velocity_functions, only: elastic_constants_t, elastic_constants, velocity_functions, &
       release_rate
    use xmpm_material_drift, only: drift_sums, drift_of

@@ -5,7 +5,8 @@ program test_t_stress
    use xmpm_samples, only: sample_t
    use xmpm_front_points, only: front_points_t, list_points, window_length
    use xmpm_domain_integral, only: domain_sums_t, domain_shape_t, sum_domains, clear_sums
-   use xmpm_near_tip, only: near_tip_fields, line_force_field, strain_of
+   use xmpm_near_tip, only: strain_of
+   use near_tip_states, only: near_tip_fields, line_force_field
    use xmpm_velocity_functions, only: elastic_constants_t, elastic_constants
    use xmpm_front_values, only: t_stress
    use penny_field, only: penny_at
