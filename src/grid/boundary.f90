@@ -64,14 +64,15 @@ contains
    end function in_region
 
    !> Prescribe velocity and change of the rows; the reaction follows from the change.
-   subroutine apply_boundary(boundary, grid, dt)
+   subroutine apply_boundary(boundary, grid, dt, again)
       type(boundary_t), intent(inout) :: boundary
       type(grid_t), intent(inout) :: grid   !! fields 2:4 hold the new velocity, 5:7 its change
       real(wp), intent(in) :: dt            !! of the change [time]
+      logical, intent(in) :: again          !! whether it adds to the reaction of this step
       real(wp) :: before, change, impulse
       integer :: i, k, d
 
-      boundary%reaction = 0
+      if (.not. again) boundary%reaction = 0
       do k = 1, size(boundary%rows)
          i = boundary%rows(k)
          if (.not. grid%node(1, i) > 0) cycle

@@ -6,7 +6,7 @@ module xmpm_momentum
    private
 
    public :: force_out_of_balance, impulse_energy, advance_momentum, add_nodal_work, &
-      blend_change, velocity_from_second, nodal_work_t, change_from_velocity
+      blend_change, velocity_from_second, nodal_work_t, change_from_velocity, sharpen_rows
 
    !> Work that nodes did or took in a step, counted once over all ranks [energy].
    type :: nodal_work_t
@@ -121,7 +121,27 @@ contains
       end do
    end subroutine blend_change
 
-   !> Velocity of MUSL's second map in fields 5:7.
+   !> Fields 5:7, say w, become (3 w - S+ S w)/2; grid%second has the momentum of S+ S w, and is
+   !> cleared. With `carry` the velocity in fields 2:4 gets what they gain.
+   subroutine sharpen_rows(grid, carry)
+      type(grid_t), intent(inout) :: grid
+      logical, intent(in) :: carry   !! whether 5:7 are the change of 2:4
+      real(wp) :: gain(3)
+      integer :: b, i, first, last
+
+      do b = 1, grid%blocks%n_node_blocks + 1
+         call active_rows(grid, b, first, last)
+         do i = first, last
+            if (.not. grid%node(1, i) > 0) cycle
+            gain = 0.5_wp*(grid%node(5:7, i) - grid%second(:, i)/grid%node(1, i))
+            grid%node(5:7, i) = grid%node(5:7, i) + gain
+            if (carry) grid%node(2:4, i) = grid%node(2:4, i) + gain
+            grid%second(:, i) = 0
+         end do
+      end do
+   end subroutine sharpen_rows
+
+   !> Velocity of MUSL's second map in fields 5:7; grid%second is cleared.
    subroutine velocity_from_second(grid)
       type(grid_t), intent(inout) :: grid
       integer :: b, i, first, last
@@ -134,6 +154,7 @@ contains
             else
                grid%node(5:7, i) = 0
             end if
+            grid%second(:, i) = 0
          end do
       end do
    end subroutine velocity_from_second

@@ -203,6 +203,10 @@ contains
          call warn(deck, block, 'scheme', &
          'usl is unstable where a node carries little mass: musl is the safe choice')
       end if
+      if (text_of(block, 'scheme') == 'usl' .and. text_of(block, 'inertia') == 'corrected') then
+         call complain(deck, block, 'inertia', 'corrected inertia goes with musl and usf: '// &
+            'usl does not smooth the velocity that strains')
+      end if
       if (has(block, 'step') .and. given(block, 'cfl')) then
          call warn(deck, block, 'cfl', 'it is not used, since a fixed step is given')
       end if

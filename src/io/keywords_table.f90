@@ -268,6 +268,9 @@ contains
          meaning='time step as a part of cell size over wave speed'))
       call add_key(t, key_t(name='transfer', kind=kind_word, default='flip', words='flip xpic', &
          meaning='velocity update of the particles: FLIP or XPIC(2)'))
+      call add_key(t, key_t(name='inertia', kind=kind_word, default='lumped', &
+         words='lumped corrected', meaning='mass of the nodes: lumped, or corrected for what '// &
+         'transfers smooth, so that short waves keep their speed'))
       call add_key(t, key_t(name='step', dimension='time', range=positive, &
          meaning='fixed time step instead of the automatic one'))
       call add_key(t, key_t(name='steps', kind=kind_integer, range='[0, inf)', &

@@ -114,7 +114,7 @@ contains
    end subroutine velocity_sided
 
    !> Momentum of the interpolated velocity of a bin's chunks (XPIC), to the rows of all sides.
-   subroutine mean_sided(p, first, kernels, sided, s, offsets, frame, grid)
+   subroutine mean_sided(p, first, kernels, sided, s, offsets, frame, field, grid)
       type(particles_t), intent(in) :: p
       integer, intent(in) :: first           !! first chunk of the bin
       type(kernels_t), intent(in) :: kernels
@@ -122,13 +122,14 @@ contains
       integer, intent(in) :: s               !! sided bin
       integer, intent(in) :: offsets(:)      !! tile nodes of the stencil, less the first
       type(frame_t), intent(in) :: frame
+      integer, intent(in) :: field           !! first of the three fields of rows
       type(grid_t), intent(inout) :: grid
       real(wp) :: value(lanes, 3)
       integer :: c, i
 
       c = first
       do while (c > 0)
-         call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, 2, value)
+         call gather_sides(p, c, kernels, sided, s, offsets, frame, grid, field, value)
          do i = 1, 3
             value(:, i) = p%q(:, c_m, c)*value(:, i)
          end do

@@ -170,13 +170,14 @@ contains
       call reduce_tally(part, tally)
    end subroutine update_velocity
 
-   !> Momentum of the velocity interpolated from fields 2:4, for XPIC: sum m N (S v) to grid%second.
-   subroutine smooth_velocity(p, bodies, kernels, sided, first, last, grid)
+   !> Momentum of what is interpolated from three fields: sum m N (S v) to grid%second.
+   subroutine smooth_velocity(p, bodies, kernels, sided, first, last, field, grid)
       type(particles_t), intent(in) :: p
       type(bodies_t), intent(in) :: bodies
       type(kernels_t), intent(in) :: kernels
       type(sided_t), intent(in) :: sided
       integer, intent(in) :: first, last      !! blocks to work on
+      integer, intent(in) :: field            !! first of the three: 2 or 5
       type(grid_t), intent(inout) :: grid
       real(wp) :: tile(8, tile_nodes), second(4, tile_nodes), value(lanes, 3)
       type(bin_list_t) :: bins
@@ -191,12 +192,13 @@ contains
             c = bins%first(k)
             bins%frame(k)%half = bodies%half(p%body(c))
             if (bins%sided(k) > 0) then
-               call mean_sided(p, c, kernels, sided, bins%sided(k), offsets, bins%frame(k), grid)
+               call mean_sided(p, c, kernels, sided, bins%sided(k), offsets, bins%frame(k), field, &
+                  grid)
                cycle
             end if
             do while (c > 0)
                bins%frame(k)%half = bodies%half(p%body(c))
-               call kernels%gather(p%q(:, :, c), bins%frame(k), tile, 2, value)
+               call kernels%gather(p%q(:, :, c), bins%frame(k), tile, field, value)
                do i = 1, 3
                   value(:, i) = value(:, i)*p%q(:, c_m, c)
                end do

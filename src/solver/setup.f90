@@ -103,6 +103,7 @@ contains
          if (has(time, 'step')) o%fixed_step = real_of(time, 'step')
          if (has(time, 'steps')) o%most_steps = integer_of(time, 'steps')
          o%xpic = lower(text_of(time, 'transfer')) == 'xpic'
+         o%sharp = lower(text_of(time, 'inertia')) == 'corrected'
          o%viscous = real_of(damping, 'viscous')
          o%pic = real_of(damping, 'pic')
          if (has(damping, 'until')) o%damped_until = real_of(damping, 'until')

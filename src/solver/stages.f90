@@ -7,7 +7,7 @@ module xmpm_stages
    use xmpm_grid, only: clear_rows, f_velocity, f_change
    use xmpm_momentum, only: force_out_of_balance, advance_momentum, add_nodal_work, &
       impulse_energy, &
-      blend_change, velocity_from_second, change_from_velocity
+      blend_change, velocity_from_second, change_from_velocity, sharpen_rows
    use xmpm_boundary, only: apply_boundary, hold_boundary, region_set
    use xmpm_transfer, only: tally_t, particles_to_grid, update_velocity, smooth_velocity, &
       update_stress, advance_positions
@@ -98,8 +98,9 @@ contains
       end do
       if (m%bodies_meet) call meet_bodies(m, f_velocity)
       do i = 1, size(m%boundaries)
-         call apply_boundary(m%boundaries(i), m%grid, dt)
+         call apply_boundary(m%boundaries(i), m%grid, dt, .false.)
       end do
+      if (m%options%sharp) call sharpen_change(m, dt)
       do i = 1, size(m%loads)
          m%loads(i)%work = m%loads(i)%work + 0.5_wp*dt*(power(m, i, 2) - power(m, i, 5))
       end do
@@ -111,11 +112,38 @@ contains
          m%impulses = impulse_energy(m%grid)
       end if
       if (eta > 0) then
-         if (m%options%xpic) call smooth(m)
+         if (m%options%xpic) call smooth(m, f_velocity)
          call blend_change(m%grid, eta, m%options%xpic)
       end if
       call stop_stage(m%clock, stage_grid)
    end subroutine advance_nodes
+
+   !> Corrected inertia: the change of velocity gets back half of what a step's transfers smooth.
+   subroutine sharpen_change(m, dt)
+      type(model_t), intent(inout) :: m
+      real(wp), intent(in) :: dt   !! [time]
+      integer :: i
+
+      call smooth(m, f_change)
+      call sharpen_rows(m%grid, carry=.true.)
+      if (m%bodies_meet) call meet_bodies(m, f_velocity)
+      do i = 1, size(m%boundaries)
+         call apply_boundary(m%boundaries(i), m%grid, dt, .true.)
+      end do
+   end subroutine sharpen_change
+
+   !> Corrected inertia: the velocity that strains gets back the other half.
+   subroutine sharpen_velocity(m)
+      type(model_t), intent(inout) :: m
+      integer :: i
+
+      call smooth(m, f_change)
+      call sharpen_rows(m%grid, carry=.false.)
+      do i = 1, size(m%boundaries)
+         call hold_boundary(m%boundaries(i), m%grid, 5)
+      end do
+      if (m%bodies_meet) call meet_bodies(m, f_change)
+   end subroutine sharpen_velocity
 
    !> Power of a load with the velocity in three fields of the rows.
    function power(m, i, field)
@@ -196,11 +224,13 @@ contains
       m%boundaries(i)%rows = pack([(k, k=1, m%grid%n_rows)], near)
    end subroutine rows_around_set
 
-   !> Momentum of the smoothed nodal velocity in grid%second, for XPIC(2).
-   subroutine smooth(m)
+   !> Momentum of three smoothed fields in grid%second, for XPIC(2) and corrected inertia.
+   subroutine smooth(m, field)
       type(model_t), intent(inout) :: m
+      integer, intent(in) :: field   !! first of the three
 
-      call smooth_velocity(m%particles, m%bodies, m%kernels, m%sided, 1, m%grid%blocks%n, m%grid)
+      call smooth_velocity(m%particles, m%bodies, m%kernels, m%sided, 1, m%grid%blocks%n, field, &
+         m%grid)
       call start_sum(m%halo, m%comm, m%grid%second, 1, 3)
       call finish_sum(m%halo, m%grid%second, 1, 3)
    end subroutine smooth
@@ -235,6 +265,7 @@ contains
          call hold_boundary(m%boundaries(i), m%grid, 5)
       end do
       if (m%bodies_meet) call meet_bodies(m, f_change)
+      if (m%options%sharp) call sharpen_velocity(m)
       call stop_stage(m%clock, stage_grid)
    end subroutine map_to_particles
 
@@ -271,6 +302,7 @@ contains
          call hold_boundary(m%boundaries(i), m%grid, 5)
       end do
       if (m%bodies_meet) call meet_bodies(m, f_change)
+      if (m%options%sharp) call sharpen_velocity(m)
       call fit_movers(m)
       call update_stress(m%particles, m%bodies, m%kernels, m%sided, m%grid, dt, 0.0_wp, m%tally, &
          m%movers, m%n_movers)

@@ -545,6 +545,10 @@ contains
       call check(suite, 'cfl can be too large', any_warning('above the stability limit (cfl = 1)'))
       call check(suite, 'usl is warned of', any_warning('usl is unstable'))
       call check(suite, 'cfl beside a step is not used', any_warning('cfl: it is not used'))
+      call parse('*JOB a|*GRID size=2|*TIME end=1 scheme=usl inertia=corrected|' &
+         //'*MATERIAL a density=1 young=1 poisson=0|*BODY b material=a box=0 0 0 1 1 1|*END')
+      call check_error(suite, 'corrected inertia does not go with usl', error, &
+         'corrected inertia goes with musl and usf')
    end subroutine warns
 
    subroutine knows_units()

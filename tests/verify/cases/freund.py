@@ -7,6 +7,10 @@ reference (Freund 1990, section 2.5) holds until waves come back, 2 H/c_d later.
 rms of K_I over all front points and over t = 0.4 to 1.8 H/c_d, over that of the reference. Wanted
 at H = 24 h: 1.5 % undamped and 0.7 % lightly damped (a PIC part of 0.05 a step); order 0.5
 undamped; K_II and K_III below 1 % of K_I, and not growing with refinement.
+
+The wave carries the body up to 0.03 mm, which is the larger part of a cell the finer the grid: off
+the lattice its crack has some K_II, 8 % of K_I a cell (at most 2 %, a quarter cell off). So has a
+body that flies as far. Under 1 % of the load it stays where the reference has it.
 """
 
 from collections.abc import Iterator
@@ -41,7 +45,7 @@ DECK = """
 @end_condition@
 *BOUNDARY plane = z 0, type = roller
 *BOUNDARY plane = z 6*h, type = roller
-*TIME     end = @end@, cfl = @cfl@
+*TIME     end = @end@, cfl = @cfl@, inertia = @inertia@
 *DAMPING  pic = @pic@
 *HEALTH   energy = 0
 *OUTPUT   particles = none, crack = opening
@@ -56,15 +60,19 @@ def follow(
     wave: bool = False,
     confined: bool = False,
     part: float = 0.0,
+    inertia: str = "lumped",
+    pull: float = PULL,
     tip: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[Run, Front, np.ndarray]:
     """Run a slab with so many cells to H; its front in the window of time, and the exact K_I.
 
     `confined` has the lateral stresses of a plane wave in the initial state, which do not act on
-    the crack; `part` is the PIC part of a step and `tip` the place of the tip in cells.
+    the crack; `part` is the PIC part of a step and `tip` the place of the tip in cells. Inertia
+    is corrected with longer steps, which suit it.
     """
     h, side = HEIGHT / cells, SIDE * confined
-    load = f"*LOAD     face = slab:+y, traction = 0 {PULL!r} 0"
+    cfl = CFL if inertia == "lumped" else 0.9
+    load = f"*LOAD     face = slab:+y, traction = 0 {pull!r} 0"
     held = f"*BOUNDARY plane = y {HEIGHT!r}, type = roller"
     deck = fill(
         DECK,
@@ -74,13 +82,14 @@ def follow(
         young=STEEL.young,
         poisson=STEEL.poisson,
         height=HEIGHT,
-        initial=[0.0 if wave else PULL * share for share in (side, 1.0, side)],
+        initial=[0.0 if wave else pull * share for share in (side, 1.0, side)],
         tip_x=tip[0] * h,
         tip_y=tip[1] * h,
         end_condition=load if wave else held,
         end=(2.8 if wave else 1.8) * CROSSING * 1.0001,
-        cfl=CFL,
-        pic=part / (CFL * h / STEEL.c_d),
+        cfl=cfl,
+        inertia=inertia,
+        pic=part / (cfl * h / STEEL.c_d),
     )
     run = run_deck(deck)
     front = read_front(run)
@@ -88,7 +97,7 @@ def follow(
     there = (since >= 0.4 * CROSSING) & (since <= 1.8001 * CROSSING)
     columns = {name: column[there] for name, column in front.columns.items()}
     front = Front(front.times[there], front.points[there], columns)
-    return run, front, half_plane_k(since[there], PULL, STEEL)[:, None]
+    return run, front, half_plane_k(since[there], pull, STEEL)[:, None]
 
 
 def rows(full: bool) -> Iterator[Row]:
@@ -98,6 +107,9 @@ def rows(full: bool) -> Iterator[Row]:
         "wave": {"wave": True},
         "sudden damped": {"part": 0.05},
         "wave damped": {"wave": True, "part": 0.05},
+        "sudden corr.": {"inertia": "corrected"},
+        "wave corr.": {"wave": True, "inertia": "corrected"},
+        "wave 1 MPa": {"wave": True, "pull": 1.0},
         "confined": {"confined": True},
         "off lattice": {"tip": (0.37, 0.23)},
     }
