@@ -1,4 +1,4 @@
-!> Impulses between bodies that meet: equal and opposite, where they approach and the gap is closed.
+!> Impulses between bodies that meet: equal and opposite, where they would close more than the gap.
 module xmpm_contact
    use xmpm_kinds, only: wp
    use xmpm_grid, only: grid_t, f_mass, f_velocity, f_change
@@ -6,7 +6,8 @@ module xmpm_contact
    implicit none
    private
 
-   public :: apply_impulses, impulse_between, is_closed, note_loss, velocity_of, hold_side
+   public :: apply_impulses, impulse_between, may_meet, velocity_of, hold_side
+   public :: note_reach, note_pull, note_first, note_second, note_again
 
    integer, parameter :: sweeps = 4            !! through the pairs, where a node has several
    real(wp), parameter :: slipping = 1e-9_wp   !! what friction may lack of its most when a pair
@@ -18,12 +19,11 @@ contains
 
    !> Impulses of all pairs on three fields of the rows.
    !>
-   !> Where the gap is closed and the rows approach, the difference of their velocities along the
-   !> normal becomes 0, and Coulomb friction acts across it. Momentum of both stays to rounding.
-   !> Prescribed components count as
+   !> Where the rows would approach by more than the gap in this step, the difference of their
+   !> velocities along the normal becomes that which closes it (0 where it is closed), and Coulomb
+   !> friction acts across it. Momentum of both stays to rounding. Prescribed components count as
    !> those of an infinite mass. With `whole` they take the impulse all the same, so that the
-   !> condition
-   !> which holds them finds it as a reaction; and the impulses are kept.
+   !> condition which holds them finds it as a reaction; and the impulses are kept.
    subroutine apply_impulses(contact, grid, field, whole)
       type(contact_t), intent(inout) :: contact
       type(grid_t), intent(inout) :: grid
@@ -35,7 +35,7 @@ contains
       if (whole) contact%impulse = 0
       do sweep = 1, merge(sweeps, 1, any(contact%many > 1))
          do i = 1, contact%n
-            if (.not. is_closed(contact, grid, i)) cycle
+            if (.not. may_meet(contact, grid, i)) cycle
             if (whole .or. .not. any(abs(contact%impulse(:, i)) > 0)) then
                call impulse_between(contact, grid, i, field, impulse)
             else
@@ -44,23 +44,26 @@ contains
             if (.not. any(abs(impulse) > 0)) cycle
             call push(contact, grid, i, 1, field, -impulse, whole)
             call push(contact, grid, i, 2, field, impulse, whole)
-            if (whole) contact%impulse(:, i) = contact%impulse(:, i) + impulse
+            if (whole) then
+               contact%impulse(:, i) = contact%impulse(:, i) + impulse
+            else
+               contact%again(:, i) = contact%again(:, i) + impulse
+            end if
          end do
       end do
    end subroutine apply_impulses
 
-   !> Whether the gap of a pair is closed.
-   pure function is_closed(contact, grid, i) result(closed)
+   !> Whether a pair may close in this step.
+   pure function may_meet(contact, grid, i) result(near)
       type(contact_t), intent(in) :: contact
       type(grid_t), intent(in) :: grid
       integer, intent(in) :: i
-      logical :: closed
+      logical :: near
 
-      closed = contact%gap(i) < merge(touching, overlap, contact%crack(i) == 0)*grid%lattice%size &
-         .and. all(grid%node(f_mass, contact%row(:, i)) > 0)
-   end function is_closed
+      near = contact%gap(i) < grid%lattice%size .and. all(grid%node(f_mass, contact%row(:, i)) > 0)
+   end function may_meet
 
-   !> Impulse on the second row of a closed pair.
+   !> Impulse on the second row of a pair, where it would close further than it may.
    pure subroutine impulse_between(contact, grid, i, field, impulse)
       type(contact_t), intent(in) :: contact
       type(grid_t), intent(in) :: grid
@@ -71,10 +74,10 @@ contains
       impulse = 0
       n = contact%normal(:, i)
       v = velocity_of(contact, grid, i, 2, field) - velocity_of(contact, grid, i, 1, field)
-      if (.not. dot_product(v, n) < 0) return
+      if (.not. dot_product(v, n) + contact%reach(i) < 0) return
       yield = yield_of(contact, grid, i)
       if (.not. dot_product(n*n, yield) > 0) return
-      normal = -dot_product(v, n)/dot_product(n*n, yield)
+      normal = -(dot_product(v, n) + contact%reach(i))/dot_product(n*n, yield)
       impulse = normal*n
       v = v + normal*yield*n
       t = v - dot_product(v, n)*n
@@ -88,10 +91,8 @@ contains
    end subroutine impulse_between
 
    !> Impulse that keeps a pair which the nodal update found in contact: the normal velocities
-   !> become
-   !> one, also where they separate, for else the stress would do work that no motion gives back;
-   !> the
-   !> others too where the pair sticks.
+   !> become one (or approach as they may), also where they separate, for else the stress would do
+   !> work that no motion gives back; the others too where the pair sticks.
    pure subroutine keep_closed(contact, grid, i, field, impulse)
       type(contact_t), intent(in) :: contact
       type(grid_t), intent(in) :: grid
@@ -164,36 +165,104 @@ contains
       end if
    end subroutine push
 
-   !> Add the energy that the impulses of the nodal update took.
+   !> How fast each pair may approach without closing its gap in this step.
+   pure subroutine note_reach(contact, size, dt)
+      type(contact_t), intent(inout) :: contact
+      real(wp), intent(in) :: size, dt   !! of the cells [length], of the step [time]
+      integer :: i
+
+      do i = 1, contact%n
+         contact%reach(i) = 0
+         if (contact%gap(i) < merge(touching, overlap, contact%crack(i) == 0)*size) cycle
+         contact%reach(i) = min(contact%gap(i), size)/dt
+      end do
+   end subroutine note_reach
+
+   !> Note what stress and loads do to the rows of all pairs, from their forces, and add what they
+   !> do on the way of the second map's impulses of the step before.
+   pure subroutine note_pull(contact, grid, dt)
+      type(contact_t), intent(inout) :: contact
+      type(grid_t), intent(in) :: grid   !! with forces in fields 5:7
+      real(wp), intent(in) :: dt         !! the step before [time]
+      integer :: i, side
+
+      contact%owed = 0
+      do i = 1, contact%n
+         do side = 1, 2
+            associate (node => grid%node(:, contact%row(side, i)))
+               contact%pull(:, side, i) = 0
+               if (node(f_mass) > 0) contact%pull(:, side, i) = &
+                  node(f_change:f_change + 2)/node(f_mass)
+            end associate
+         end do
+         if (grid%mine(contact%row(1, i))) contact%lost = contact%lost &
+            + 0.5_wp*dt*work_again(contact, i)
+         contact%again(:, i) = 0
+      end do
+   end subroutine note_pull
+
+   !> Power of stress and loads on what the second map's impulses changed.
+   pure function work_again(contact, i) result(power)
+      type(contact_t), intent(in) :: contact
+      integer, intent(in) :: i
+      real(wp) :: power   !! [energy/time]
+
+      power = dot_product(contact%again(:, i), &
+         merge(0.0_wp, contact%pull(:, 2, i), contact%held(:, 2, i)) &
+         - merge(0.0_wp, contact%pull(:, 1, i), contact%held(:, 1, i)))
+   end function work_again
+
+   !> Add half of what the impulses of the nodal update took: that with the velocities before it.
    !>
-   !> An impulse balances the forces that press the bodies together, which costs nothing where both
-   !> strain with one velocity, and stops what they had of relative velocity u before the update:
-   !> that costs m u**2/2 with the mass m that yields. Slip costs friction times the mean slip.
-   !> `before` is the velocity of rigid bodies before the step.
-   subroutine note_loss(contact, grid, before)
+   !> An impulse takes the kinetic energy of the particles by minus its product with the mean of two
+   !> relative velocities: that before the nodal update and that of the second map.
+   subroutine note_first(contact, grid, before)
       type(contact_t), intent(inout) :: contact
       type(grid_t), intent(in) :: grid
-      real(wp), intent(in) :: before(:, :)   !! (3,rigid bodies) [length/time]
-      real(wp) :: u(3), v(3), n(3), across(3), yield(3)
+      real(wp), intent(in) :: before(:, :)   !! (3,rigid bodies) before the step [length/time]
       integer :: i
 
       do i = 1, contact%n
          if (.not. any(abs(contact%impulse(:, i)) > 0)) cycle
          if (.not. grid%mine(contact%row(1, i))) cycle
-         n = contact%normal(:, i)
-         yield = yield_of(contact, grid, i)
-         u = old_velocity(contact, grid, i, 2, before) - old_velocity(contact, grid, i, 1, before)
-         if (sticks(contact, i)) then
-            contact%lost = contact%lost + 0.5_wp*sum(u**2/yield, mask=yield > 0)
-            cycle
-         end if
-         contact%lost = contact%lost + 0.5_wp*dot_product(u, n)**2/dot_product(n*n, yield)
-         across = contact%impulse(:, i) - dot_product(contact%impulse(:, i), n)*n
-         v = velocity_of(contact, grid, i, 2, f_velocity) &
-            - velocity_of(contact, grid, i, 1, f_velocity)
-         contact%lost = contact%lost - 0.5_wp*dot_product(across, u + v)
+         contact%lost = contact%lost - 0.5_wp*dot_product(contact%impulse(:, i), &
+            old_velocity(contact, grid, i, 2, before) - old_velocity(contact, grid, i, 1, before))
       end do
-   end subroutine note_loss
+   end subroutine note_first
+
+   !> Add the other half, with the velocities of three fields: of the second map, before its own
+   !> impulses.
+   subroutine note_second(contact, grid, field)
+      type(contact_t), intent(inout) :: contact
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: field
+      integer :: i
+
+      do i = 1, contact%n
+         if (.not. any(abs(contact%impulse(:, i)) > 0)) cycle
+         if (.not. grid%mine(contact%row(1, i))) cycle
+         contact%lost = contact%lost - 0.5_wp*dot_product(contact%impulse(:, i), &
+            grid%node(field:field + 2, contact%row(2, i)) &
+            - grid%node(field:field + 2, contact%row(1, i)))
+      end do
+   end subroutine note_second
+
+   !> Add the work of stress on what the second map's impulses changed: half of it with the stress
+   !> of now, the other half with that of the next step, which is owed until then.
+   subroutine note_again(contact, grid, dt)
+      type(contact_t), intent(inout) :: contact
+      type(grid_t), intent(in) :: grid
+      real(wp), intent(in) :: dt   !! [time]
+      real(wp) :: work
+      integer :: i
+
+      do i = 1, contact%n
+         if (.not. grid%mine(contact%row(1, i))) cycle
+         work = 0.5_wp*dt*work_again(contact, i)
+         contact%lost = contact%lost + work
+         contact%owed = contact%owed + work
+      end do
+   end subroutine note_again
 
    !> Velocity of one side of a pair before the nodal update.
    pure function old_velocity(contact, grid, i, side, before) result(v)

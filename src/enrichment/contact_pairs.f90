@@ -37,8 +37,15 @@ module xmpm_contact_pairs
       real(wp), allocatable :: place(:, :)            !! (3,n) of the node [length]
       real(wp), allocatable :: normal(:, :)           !! (3,n) from the first to the second
       real(wp), allocatable :: gap(:)                 !! (n) along it [length]
+      real(wp), allocatable :: reach(:)               !! (n) speed of approach that does not yet
+                                                      !! close the gap in this step [length/time]
       real(wp), allocatable :: impulse(:, :)          !! (3,n) on the second in this step [momentum]
+      real(wp), allocatable :: again(:, :)            !! (3,n) likewise in the velocity that strains
                                                       !! [momentum]
+      real(wp), allocatable :: pull(:, :, :)          !! (3,2,n) acceleration of both rows by stress
+                                                      !! and loads [length/time^2]
+      real(wp) :: owed = 0                            !! part of `lost` that the next step finds
+                                                      !! again [energy]
       logical, allocatable :: held(:, :, :)           !! (3,2,n) components that are prescribed
       real(wp), allocatable :: prescribed(:, :, :)    !! (3,2,n) their velocity [length/time]
       type(halo_t) :: halo                            !! pairs as other ranks have them too
@@ -99,14 +106,17 @@ contains
       if (allocated(contact%row)) then
          deallocate (contact%crack, contact%mu, contact%row, contact%group, contact%first, &
             contact%many, contact%place, &
-            contact%normal, contact%gap, contact%impulse, contact%held, &
-            contact%prescribed)
+            contact%normal, contact%gap, contact%reach, contact%impulse, contact%again, &
+            contact%pull, contact%held, contact%prescribed)
       end if
+      contact%lost = contact%lost + contact%owed   ! the pairs that it belongs to are gone
+      contact%owed = 0
       contact%n = 0
       allocate (contact%crack(n), contact%mu(n), contact%row(2, n), contact%group(2, n), &
          contact%normal(3, n))
       allocate (contact%gap(n), contact%place(3, n))
-      allocate (contact%impulse(3, n), source=0.0_wp)
+      allocate (contact%reach(n), contact%impulse(3, n), contact%again(3, n), &
+         contact%pull(3, 2, n), source=0.0_wp)
       allocate (contact%held(3, 2, n), contact%prescribed(3, 2, n))
       allocate (contact%first(n_rows), contact%many(n_rows), source=0)
    end subroutine make_room

@@ -12,7 +12,7 @@ module xmpm_rigid
    use xmpm_grid, only: grid_t, f_mass, f_velocity, f_change
    use xmpm_split, only: split_t, row_of_sides, sides_of_group
    use xmpm_contact_pairs, only: contact_t
-   use xmpm_contact, only: impulse_between, is_closed
+   use xmpm_contact, only: impulse_between, may_meet
    implicit none
    private
 
@@ -149,7 +149,7 @@ contains
             r = contact%rigid(contact%group(side, i))
             if (r == 0 .or. contact%rigid(contact%group(3 - side, i)) > 0) cycle
             if (.not. grid%mine(contact%row(1, i))) cycle
-            if (.not. is_closed(contact, grid, i)) cycle
+            if (.not. may_meet(contact, grid, i)) cycle
             call impulse_between(contact, grid, i, f_velocity, impulse)
             if (.not. any(abs(impulse) > 0)) cycle
             n = contact%normal(:, i)

@@ -43,6 +43,7 @@ module xmpm_model
       real(wp) :: damped_until = huge(1.0_wp)!! end of the damping [time]
       logical :: xpic = .false.              !! XPIC(2) transfer
       logical :: sharp = .false.             !! inertia corrected for the two transfers
+      logical :: strain_first = .false.      !! stress before forces (USF)
       logical :: strain_by_nodes = .false.   !! nodal velocities themselves strain (USL)
       real(wp) :: energy_limit = 0.1_wp      !! error of the balance at which a run is given up
       real(wp) :: smallest_step = 1e-3_wp    !! part of the first step at which a run is given up

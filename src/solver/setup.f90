@@ -91,6 +91,7 @@ contains
       select case (lower(text_of(time, 'scheme')))
       case ('usf')
          m%take_step => step_usf
+         m%options%strain_first = .true.
       case ('usl')
          m%take_step => step_usl
          m%options%strain_by_nodes = .true.

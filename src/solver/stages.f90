@@ -19,7 +19,7 @@ module xmpm_stages
    use xmpm_crack, only: advance_crack
    use xmpm_fracture, only: measure_front
    use xmpm_front_flags, only: flag_conditions
-   use xmpm_meet, only: measure_contact, meet_bodies
+   use xmpm_meet, only: measure_contact, meet_bodies, meet_straining, meet_again
    use xmpm_model, only: model_t
    implicit none
    private
@@ -264,7 +264,7 @@ contains
       do i = 1, size(m%boundaries)
          call hold_boundary(m%boundaries(i), m%grid, 5)
       end do
-      if (m%bodies_meet) call meet_bodies(m, f_change)
+      if (m%bodies_meet) call meet_again(m)
       if (m%options%sharp) call sharpen_velocity(m)
       call stop_stage(m%clock, stage_grid)
    end subroutine map_to_particles
@@ -301,7 +301,7 @@ contains
          if (m%boundaries(i)%region == region_set) call rows_around_set(m, i)
          call hold_boundary(m%boundaries(i), m%grid, 5)
       end do
-      if (m%bodies_meet) call meet_bodies(m, f_change)
+      if (m%bodies_meet) call meet_straining(m)
       if (m%options%sharp) call sharpen_velocity(m)
       call fit_movers(m)
       call update_stress(m%particles, m%bodies, m%kernels, m%sided, m%grid, dt, 0.0_wp, m%tally, &

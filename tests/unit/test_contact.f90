@@ -77,10 +77,10 @@ contains
       ! Momentum of each cube is 0.27; rounding of some hundred sums.
       call check_close(suite, name//'momentum stays', norm2(balance%linear), 0.0_wp, 1e-13_wp, &
          0.0_wp)
-      ! What is stopped at once is a large part of so small a cube, and FLIP loses more of it than
-      ! the nodes do: 6 to 9 % of the energy, measured.
-      call check_close(suite, name//'the ledger knows most of the loss', balance%relative_error, &
-         0.0_wp, 0.1_wp, 0.0_wp)
+      ! What is stopped at once is a large part of so small a cube. What is left is that of a
+      ! shock over a step: 1 % at half the critical one, 0.1 % at a tenth of it.
+      call check_close(suite, name//'the ledger knows the loss', balance%relative_error, &
+         0.0_wp, 0.02_wp, 0.0_wp)
    end subroutine test_cubes
 
    !> Largest x (of the first body) or -x (of the second) and mean velocity along x of a body.
