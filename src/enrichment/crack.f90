@@ -35,6 +35,8 @@ module xmpm_crack
 
    real(wp), parameter :: drift = 0.02_wp  !! relative motion after which level sets are renewed
                                            !! [cells]
+   real(wp), parameter :: close = 0.02_wp  !! particles so near to the surface keep their
+                                           !! side, at first that below [cells]
 
    !> One crack.
    type :: crack_t
@@ -172,7 +174,8 @@ contains
       reach = merge(3.5_wp, 3.0_wp, lattice%shape == gimp_shape)*lattice%size
    end function near_reach
 
-   !> Level sets and H of all particles near the crack. A side, once given behind the front, stays.
+   !> Level sets and H of all particles near the crack. A side, once given behind the front, stays,
+   !> and so does that of a particle that lies in the surface itself.
    !>
    !> With `grown` only those near the fronts: what growth has changed.
    subroutine find_near(crack, number, grid, p, error, grown)
@@ -266,9 +269,10 @@ contains
                   ' cracks are near the particle '//to_text(p%id(i, c)))
                return
             end if
-            side = merge(1.0_wp, -1.0_wp, psi > 0)
-            if (nint(near(i, at + near_crack)) == number .and. near(i, at + near_phi) < 0) then
-               side = near(i, at + near_side)
+            side = merge(1.0_wp, -1.0_wp, psi > close*h)
+            if (nint(near(i, at + near_crack)) == number) then
+               if (near(i, at + near_phi) < 0 .or. abs(psi) < close*h) &
+                  side = near(i, at + near_side)
             end if
             jump = side
             slope = 0

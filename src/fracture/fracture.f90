@@ -2,6 +2,7 @@
 module xmpm_fracture
    use xmpm_kinds, only: wp
    use xmpm_communicator, only: comm_t, sum_all
+   use xmpm_halo, only: halo_t
    use xmpm_lattice, only: bin_corner
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, attach, bin_of_chunk, c_s, c_vol
@@ -90,12 +91,13 @@ contains
 
    !> Find the values at the fronts of one crack of the list. The rows hold mass, momentum and
    !> force as P2G leaves them; nothing of the run is changed. Collective.
-   subroutine measure_front(fracture, which, cracks, comm, grid, p, bodies, kernels, sided, loads, &
-         time, speed)
+   subroutine measure_front(fracture, which, cracks, comm, halo, grid, p, bodies, kernels, sided, &
+         loads, time, speed)
       type(fracture_t), intent(inout) :: fracture
       integer, intent(in) :: which                 !! place in the list
       type(crack_t), intent(in) :: cracks(:)
       type(comm_t), intent(in) :: comm
+      type(halo_t), intent(inout) :: halo
       type(grid_t), intent(in) :: grid
       type(particles_t), intent(in) :: p
       type(bodies_t), intent(in) :: bodies
@@ -122,8 +124,8 @@ contains
          values%speed = speed
          reach = maxval(shape%radius)
          if (any(fracture%methods /= method_domain)) reach = reach + shape%support
-         call collect_samples(crack, number, reach, grid, p, bodies, kernels, sided, loads, time, &
-            samples)
+         call collect_samples(crack, number, reach, allocated(crack%offset), comm, halo, grid, p, &
+            bodies, kernels, sided, loads, time, samples)
          call find_ends(crack%front, comm, grid%lattice%size, samples, values%points)
          call clear_sums(sums, size(shape%radius), values%points%n)
          drift = drift_at(samples, values%points, speed, comm)

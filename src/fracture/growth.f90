@@ -276,6 +276,8 @@ contains
          growth%rate(i) = (1 - f)*before%rate(a) + f*before%rate(b)
          growth%intensity(i) = (1 - f)*before%intensity(a) + f*before%intensity(b)
          growth%speed(i) = (1 - f)*before%speed(a) + f*before%speed(b)
+         growth%rayleigh(i) = (1 - f)*before%rayleigh(a) + f*before%rayleigh(b)
+         growth%dilatational(i) = (1 - f)*before%dilatational(a) + f*before%dilatational(b)
          if (.not. stayed) cycle
          offset(i) = old(a)
          growth%kink(i) = before%kink(a)

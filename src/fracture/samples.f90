@@ -1,6 +1,8 @@
 !> The particles around the fronts of one crack, with all that integrals over them need.
 module xmpm_samples
    use xmpm_kinds, only: wp
+   use xmpm_communicator, only: comm_t
+   use xmpm_halo, only: halo_t
    use xmpm_lattice, only: bin_corner
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, lanes, bin_of_chunk, c_x, c_v, c_m, c_vol, c_s, &
@@ -14,6 +16,7 @@ module xmpm_samples
    use xmpm_front, only: front_t, front_place_t, nearest_on_front
    use xmpm_crack, only: crack_t
    use xmpm_chunk_state, only: pull_and_rate
+   use xmpm_resolved, only: resolve_fields
    implicit none
    private
 
@@ -39,15 +42,27 @@ module xmpm_samples
       integer :: edge = 0            !! front edge that holds it
    end type sample_t
 
+   real(wp), parameter :: margin = 0.9_wp        !! of a chunk around the middle of its bin [cells]
+   real(wp), parameter :: beyond = 2.5_wp        !! the same where chunks beyond reach take part in
+                                                 !! the smoothing [cells]
+   integer, parameter :: f_stress = 1            !! places of the fields that are smoothed
+   integer, parameter :: f_velocity = 7
+   integer, parameter :: f_deformation = 10
+   integer, parameter :: n_fields = 18
+
 contains
 
    !> The traced particles of this rank within reach of the fronts of a crack. The rows hold mass,
-   !> momentum and force as P2G leaves them.
-   subroutine collect_samples(crack, number, reach, grid, p, bodies, kernels, sided, loads, time, &
-         samples)
+   !> momentum and force as P2G leaves them. With `resolve` stress, deformation and velocity are
+   !> what the grid resolves of them. Collective.
+   subroutine collect_samples(crack, number, reach, resolve, comm, halo, grid, p, bodies, kernels, &
+         sided, loads, time, samples)
       type(crack_t), intent(in) :: crack                      !! gathered
       integer, intent(in) :: number                           !! of the crack
       real(wp), intent(in) :: reach                           !! [length]
+      logical, intent(in) :: resolve
+      type(comm_t), intent(in) :: comm
+      type(halo_t), intent(inout) :: halo
       type(grid_t), intent(in) :: grid
       type(particles_t), intent(in) :: p
       type(bodies_t), intent(in) :: bodies
@@ -56,39 +71,64 @@ contains
       type(load_t), intent(in) :: loads(:)
       real(wp), intent(in) :: time                            !! of the loads [time]
       type(sample_t), allocatable, intent(out) :: samples(:)
+      real(wp), allocatable :: fields(:, :, :)
       integer, allocatable :: near(:)
       integer :: i, n
 
-      near = chunks_near(crack%front, reach, grid, p)
+      near = chunks_near(crack%front, reach + merge(beyond, margin, resolve)*grid%lattice%size, &
+         grid, p)
       allocate (samples(sum(p%count(near))))
+      if (resolve) then
+         allocate (fields(lanes, n_fields, size(near)))
+         do i = 1, size(near)
+            call read_fields(p, near(i), fields(:, :, i))
+         end do
+         call resolve_fields(near, comm, halo, grid, p, bodies, kernels, sided, fields)
+      end if
       n = 0
       do i = 1, size(near)
-         call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, sided, &
-            loads, time, samples, n)
+         if (resolve) then
+            call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, sided, &
+               loads, time, samples, n, fields(:, :, i))
+         else
+            call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, sided, &
+               loads, time, samples, n)
+         end if
       end do
       samples = samples(:n)
    end subroutine collect_samples
 
-   !> The traced chunks that may have particles within reach of a front.
+   !> Stress, velocity and deformation gradient of the lanes of a chunk.
+   pure subroutine read_fields(p, c, fields)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: c                  !! chunk
+      real(wp), intent(out) :: fields(:, :)     !! (8,18)
+
+      fields(:, f_stress:f_stress + 5) = p%q(:, c_s:c_s + 5, c)
+      fields(:, f_velocity:f_velocity + 2) = p%q(:, c_v:c_v + 2, c)
+      fields(:, f_deformation:f_deformation + 8) = &
+         p%near(:, p%trace + trace_f:p%trace + trace_f + 8, p%attached(c))
+   end subroutine read_fields
+
+   !> The traced chunks whose bins are near a front.
    pure function chunks_near(front, reach, grid, p) result(near)
       type(front_t), intent(in) :: front
-      real(wp), intent(in) :: reach            !! [length]
+      real(wp), intent(in) :: reach            !! of the bins' middles [length]
       type(grid_t), intent(in) :: grid
       type(particles_t), intent(in) :: p
       integer, allocatable :: near(:)
       integer :: chosen(count(p%attached(:p%n_chunks) > 0)), c, n
       type(front_place_t) :: place
-      real(wp) :: centre(3), margin
+      real(wp) :: centre(3)
 
       n = 0
-      margin = 0.9_wp*grid%lattice%size
       if (p%trace >= 0) then
          do c = 1, p%n_chunks
             if (p%attached(c) == 0) cycle
             if (p%count(c) == 0) cycle
             centre = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) &
                + 0.5_wp*grid%lattice%size
-            call nearest_on_front(front, centre, reach + margin, place)
+            call nearest_on_front(front, centre, reach, place)
             if (place%edge == 0) cycle
             n = n + 1
             chosen(n) = c
@@ -99,7 +139,7 @@ contains
 
    !> Append the particles of one chunk, for which there is room.
    subroutine sample_chunk(front, number, reach, grid, p, c, bodies, kernels, sided, loads, time, &
-         samples, n)
+         samples, n, fields)
       type(front_t), intent(in) :: front
       integer, intent(in) :: number, c
       real(wp), intent(in) :: reach, time
@@ -111,6 +151,7 @@ contains
       type(load_t), intent(in) :: loads(:)
       type(sample_t), intent(inout) :: samples(:)
       integer, intent(inout) :: n
+      real(wp), intent(in), optional :: fields(:, :)   !! (8,18) instead of what particles carry
       real(wp) :: pull(lanes, 3), rate(lanes, 9), load(lanes, 3)
       logical :: inside
       integer :: i
@@ -126,11 +167,17 @@ contains
             if (.not. any(abs(s%back) > 0)) cycle
             call place_sample(front, reach, s, inside)
             if (.not. inside) cycle
+            if (present(fields)) then
+               s%stress = fields(i, f_stress:f_stress + 5)
+               s%v = fields(i, f_velocity:f_velocity + 2)
+               s%back = rows_of(fields(i, f_deformation:f_deformation + 8))
+            end if
             s%back = inverse(s%back)
             select type (law => bodies%laws(bodies%law_of(p%body(c)))%law)
             type is (elastic_t)
                s%lambda = law%lambda
                s%mu = law%mu
+               if (present(fields)) s%work = law%strain_energy(s%stress)
             end select
             s%pull = pull(i, :)
             s%rate = rows_of(rate(i, :))

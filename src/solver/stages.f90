@@ -351,8 +351,8 @@ contains
                if (m%growth(k)%crack == m%fracture%cracks(i)) speed = m%growth(k)%speed
             end do
          end if
-         call measure_front(m%fracture, i, m%cracks, m%comm, m%grid, m%particles, m%bodies, &
-            m%kernels, m%sided, m%loads, m%time, speed)
+         call measure_front(m%fracture, i, m%cracks, m%comm, m%halo, m%grid, m%particles, &
+            m%bodies, m%kernels, m%sided, m%loads, m%time, speed)
          call flag_conditions(m%boundaries, m%comm, m%grid, m%fracture%values(i))
          deallocate (speed)
       end do
