@@ -271,8 +271,9 @@ contains
             end if
             side = merge(1.0_wp, -1.0_wp, psi > close*h)
             if (nint(near(i, at + near_crack)) == number) then
-               if (near(i, at + near_phi) < 0 .or. abs(psi) < close*h) &
+               if (near(i, at + near_phi) < 0 .or. abs(psi) < close*h) then
                   side = near(i, at + near_side)
+               end if
             end if
             jump = side
             slope = 0

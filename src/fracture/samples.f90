@@ -88,11 +88,11 @@ contains
       n = 0
       do i = 1, size(near)
          if (resolve) then
-            call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, sided, &
-               loads, time, samples, n, fields(:, :, i))
+            call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, &
+               sided, loads, time, samples, n, fields(:, :, i))
          else
-            call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, sided, &
-               loads, time, samples, n)
+            call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, &
+               sided, loads, time, samples, n)
          end if
       end do
       samples = samples(:n)
