@@ -194,7 +194,8 @@ contains
          meaning='graded front: distance ahead of the front at which the weight is 0, in cells'))
       call add_key(t, key_t(name='contact', kind=kind_word, default='none', &
          words='none frictionless friction', &
-         meaning='contact of the faces with each other, where they are closed'))
+         meaning='contact of the faces with each other, where they are closed; '// &
+         'without it a warning tells of overlaps'))
       call add_key(t, key_t(name='friction', range=not_negative, &
          meaning='coefficient of Coulomb friction of the faces; for contact = friction'))
    end subroutine add_cracks

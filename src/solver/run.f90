@@ -14,6 +14,7 @@ module xmpm_run
    use xmpm_ledger, only: take_balance
    use xmpm_settle, only: settle, choose_step
    use xmpm_grow_cracks, only: judge_fronts
+   use xmpm_overlap, only: overlap_of_faces
    use xmpm_relax, only: relax
    use xmpm_fracture, only: fracture_t, release_range
    use xmpm_model, only: model_t
@@ -30,6 +31,7 @@ module xmpm_run
       real(wp) :: history = 0     !! time of the next rows [time]
       real(wp) :: fronts = 0      !! time of the next values at the fronts [time]
       type(balance_t) :: balance  !! the last one taken
+      logical :: told = .false.   !! that faces of a crack overlap
    end type agenda_t
 
 contains
@@ -65,6 +67,7 @@ contains
          if (allocated(error)) exit
          call write_due(m, results, agenda, is_last(m), error)
          call watch_energy(m, agenda, log, error)
+         call watch_faces(m, agenda, log)
          call count_step(progress, m%n_particles)
          if (progress_due(progress, log)) call report_progress(progress, log, state_of(m, agenda))
       end do
@@ -183,4 +186,18 @@ contains
          ' (energy in *HEALTH; 0 for no limit)')
       call log_warning(log, error%message)
    end subroutine watch_energy
+
+   !> Warn once where the faces of a crack without contact overlap. Collective.
+   subroutine watch_faces(m, agenda, log)
+      type(model_t), intent(in) :: m
+      type(agenda_t), intent(inout) :: agenda
+      type(log_t), intent(inout) :: log
+      character(len=:), allocatable :: text
+
+      if (agenda%told .or. size(m%cracks) == 0) return
+      if (mod(m%step, watch_interval) /= 0 .and. .not. is_last(m)) return
+      call overlap_of_faces(m, text)
+      agenda%told = len(text) > 0
+      if (agenda%told) call log_warning(log, text)
+   end subroutine watch_faces
 end module xmpm_run

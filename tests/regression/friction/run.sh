@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# A closed crack slips as Coulomb says and stays shut; without contact its faces overlap, which is told once.
+# ranks: 2
+# shellcheck source=../case.sh
+source "$(dirname "$0")/../case.sh"
+
+sed 's/contact = friction, friction = 0.3/contact = frictionless/' "$here/deck.inp" >free.inp
+sed '/contact = friction/d' "$here/deck.inp" >none.inp
+run_deck "$ranks" friction
+run_deck "$ranks" free free.inp
+run_deck "$ranks" none none.inp >none.txt 2>&1
+PYTHONPATH=$here/../../../postproc "${XMPM_PYTHON:-python3}" - <<'PYTHON' || failed=1
+import sys
+
+import numpy as np
+
+from xmpm_post import open_run
+
+met, free, none = (open_run(name).crack().fields["opening"] for name in ("friction", "free", "none"))
+ratio = np.abs(met[:, 0]).max() / np.abs(free[:, 0]).max()
+rows = (
+    ("slip over the frictionless one", abs(ratio / 0.5 - 1), 0.03),  # (tau - mu p) / tau = 0.5
+    ("overlap in cells", -met[:, 1].min() / 2, 1e-3),
+    ("opening in cells", met[:, 1].max() / 2, 1e-3),
+    ("without contact: overlap, inverse", 1e-3 * 2 / -none[:, 1].min(), 1),
+)
+for name, value, limit in rows:
+    print(f"{'ok    ' if value < limit else 'FAILED'} {name}: {value:.3g}, limit {limit}")
+sys.exit(not all(value < limit for _, value, limit in rows))
+PYTHON
+expect_text none/slab.log "warning: the faces of crack slit overlap by" 'its contact is off'
+if [ "$(grep -c 'overlap by' none/slab.log)" -ne 1 ] || grep -q 'overlap by' friction/slab.log; then
+   echo 'FAILED the warning must come once, and not where contact is on'
+   failed=1
+fi
+finish
