@@ -42,7 +42,7 @@ contains
       limits%shortest = 0.5_wp*min(h, element)
       limits%longest = 1.4_wp*min(h, element)
       limits%least = 0.1_wp*min(increment, limits%shortest)
-      limits%meeting = limits%shortest
+      limits%meeting = limits%shortest + 2*increment
    end function limits_for
 
    !> The nodes of one chain, each moved by its advance; those that stay keep their vertex.

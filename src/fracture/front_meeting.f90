@@ -12,14 +12,16 @@ module xmpm_front_meeting
 
    real(wp), parameter :: facing = -0.3_wp   !! largest product of the directions ahead of two
                                              !! fronts that meet
+   real(wp), parameter :: beside = -0.5_wp   !! the same of the direction ahead and that to the
+                                             !! other front: fronts beside each other may have
+                                             !! passed by a little
 
 contains
 
    !> The chain that each node meets: near, ahead, and coming the other way; 0 for none.
-   pure subroutine find_meetings(front, advance, limits, partner)
+   pure subroutine find_meetings(front, reach, partner)
       type(front_t), intent(in) :: front              !! all fronts of the crack
-      real(wp), intent(in) :: advance(:, :)           !! (3,nn) way of each node [length]
-      type(front_limits_t), intent(in) :: limits
+      real(wp), intent(in) :: reach                   !! distance from which they meet [length]
       integer, intent(out) :: partner(:)              !! (nn) chain
       real(wp) :: gap(3), best, d
       integer :: i, j, k, c
@@ -36,9 +38,9 @@ contains
             if (c == chain(i)) cycle
             gap = nearest_in_edge(front, k, front%x(:, i)) - front%x(:, i)
             d = norm2(gap)
-            if (d > norm2(advance(:, i)) + norm2(advance(:, j)) + limits%meeting) cycle
+            if (d > reach) cycle
             if (dot_product(front%e1(:, i), front%e1(:, j)) > facing) cycle
-            if (dot_product(gap, front%e1(:, i)) <= 0.0_wp .or. .not. d < best) cycle
+            if (dot_product(gap, front%e1(:, i)) <= beside*d .or. .not. d < best) cycle
             best = d
             partner(i) = c
          end do
@@ -68,19 +70,25 @@ contains
       end associate
    end function nearest_in_edge
 
-   !> The chain that meets a chain with all nodes that lie in the material, and is met by it with
-   !> all of its own; 0 for none. Both must be open or both closed, with their normals alike.
-   pure function ready_to_join(front, chain, partner, material) result(other)
+   !> The chain that a chain has met with some node, if all nodes of both that lie in the material
+   !> are near the other; 0 for none. Both must be open or both closed, with their normals alike.
+   pure function ready_to_join(front, chain, partner, near, material) result(other)
       type(front_t), intent(in) :: front             !! fronts of one crack
       integer, intent(in) :: chain
       integer, intent(in) :: partner(:)              !! (nn) of find_meetings
+      integer, intent(in) :: near(:)                 !! (nn) the same over a longer distance
       class(material_test_t), intent(in) :: material
       integer :: other
 
-      other = maxval(partner(front%chain_offset(chain):front%chain_offset(chain + 1) - 1))
+      associate (first => front%chain_offset(chain), last => front%chain_offset(chain + 1) - 1)
+         other = maxval(partner(first:last))
+         ! The meeting of two may have been noticed by the other one only.
+         if (other == 0) other = maxval(chain_of(front), mask=partner == chain)
+      end associate
+      other = max(other, 0)
       if (other == 0) return
-      if (wholly_met(front, chain, other, partner, material) .and. &
-          wholly_met(front, other, chain, partner, material) .and. &
+      if (wholly_met(front, chain, other, near, material) .and. &
+          wholly_met(front, other, chain, near, material) .and. &
           (front%closed(chain) .eqv. front%closed(other))) then
          if (dot_product(front%e2(:, front%chain_offset(chain)), &
              front%e2(:, front%chain_offset(other))) > 0.0_wp) return

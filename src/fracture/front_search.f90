@@ -74,7 +74,7 @@ contains
       key = int(minval(pair), i8)*2_i8**31 + int(maxval(pair), i8)
    end function pair_key
 
-   !> Whether material is just ahead of an edge, at five places along it.
+   !> Whether material is at an edge or just ahead of it, at five places along it.
    pure function has_material_ahead(surface, e, h, material) result(has)
       type(surface_t), intent(in) :: surface
       integer, intent(in) :: e
@@ -90,7 +90,8 @@ contains
       has = .false.
       do i = 1, 9, 2
          f = 0.1_wp*real(i, wp)
-         has = has .or. material%inside(a + f*(b - a) + test_ahead*h*ahead)
+         has = has .or. material%inside(a + f*(b - a)) &
+            .or. material%inside(a + f*(b - a) + test_ahead*h*ahead)
       end do
    end function has_material_ahead
 end module xmpm_front_search

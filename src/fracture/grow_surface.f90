@@ -41,10 +41,13 @@ module xmpm_grow_surface
       logical, allocatable :: stays(:)         !! (nn) nodes that do not go
       logical, allocatable :: turns(:)         !! (chains) open ends are not led out
       integer, allocatable :: partner(:)       !! (nn) chain that a node has met
+      integer, allocatable :: near(:)          !! (nn) chain that it is about to meet
    end type plan_t
 
    integer, parameter :: smoothing = 3   !! passes over a new front; waves of four segments and
                                          !! less are then halved at least
+   real(wp), parameter :: about = 1.5_wp !! times the distance at which fronts meet: so far their
+                                         !! last nodes may be when the first have met
    integer, parameter :: attempts = 6    !! lines that are tried before growth has failed
 
 contains
@@ -99,8 +102,9 @@ contains
       logical :: ready
 
       plan%advance = advance
-      allocate (plan%partner(front%node_count))
-      call find_meetings(front, advance, limits, plan%partner)
+      allocate (plan%partner(front%node_count), plan%near(front%node_count))
+      call find_meetings(front, limits%meeting, plan%partner)
+      call find_meetings(front, about*limits%meeting, plan%near)
       do chain = 1, front%chain_count
          associate (first => front%chain_offset(chain), last => front%chain_offset(chain + 1) - 1)
             if (any(waits(first:last)) .or. any(plan%partner(first:last) > 0)) cycle
@@ -126,7 +130,7 @@ contains
       joined = 0
       call start_draft(surface, front, draft)
       do chain = 1, front%chain_count
-         other = ready_to_join(front, chain, plan%partner, material)
+         other = ready_to_join(front, chain, plan%partner, plan%near, material)
          if (other > 0) then
             if (other < chain) cycle
             call join_chains(front, chain, other, limits, draft)

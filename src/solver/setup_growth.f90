@@ -88,7 +88,7 @@ contains
       call check_fracture(m, deck, block, growth)
       ! Where the domains of two fronts touch, K is that of neither alone.
       if (growth%needs_intensity .and. allocated(m%fracture%shape%radius)) then
-         growth%limits%meeting = 2*maxval(m%fracture%shape%radius)
+         growth%limits%meeting = max(growth%limits%meeting, 2*maxval(m%fracture%shape%radius))
       end if
       call start_growth(growth, m%cracks(crack))
       m%growth = [m%growth, growth]

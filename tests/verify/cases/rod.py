@@ -2,11 +2,10 @@
 
 The crack begins in mixed mode, K_II/K_I about 0.6, and must turn to mode I: half-way K_II is below
 a tenth of K_I, which is a hundredth of G. Its front reaches all sides and locks there, so that none
-is left; the surface covers the whole section: it
-lies over every column of particles. From then on the
-halves are free bodies: the momentum of each grows with the load on its end, 400 MPa on 50 x 50 mm,
-and with nothing else. It is taken from the particles by the side of the crack that they are on, so
-that a bond that is left, or a particle on the wrong side, shows; 1 % is what the load itself is
+is left; the surface covers the whole section: it lies over every column of particles. From then on
+the halves are free bodies: the momentum of each grows with the load on its end, 400 MPa on 50 x 50
+mm, and with nothing else. It is taken from the particles by the side of the crack that they are on,
+so that a bond that is left, or a particle on the wrong side, shows; 1 % is what the load itself is
 known to, on faces of particles.
 """
 

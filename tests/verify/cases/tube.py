@@ -5,9 +5,9 @@ hundredth of G. They run round the tube and meet on the other side, at 180 degre
 within a cell of the mean radius: turned by 180 degrees about its radius the slit is itself, so that
 none of the fronts may be ahead. They come beside each other, 10 mm apart along the axis as the ends
 of the slit are, and are joined. Then no front is left, the surface is one ring with an inner and an
-outer rim that lies over every column of particles of the wall, and the halves are free bodies: the momentum of each grows
-with the load on its end and with nothing else; 1 % is what the load itself is known to, on a ring
-of cubes.
+outer rim that lies over every column of particles of the wall, and the halves are free bodies: the
+momentum of each grows with the load on its end and with nothing else; 1 % is what the load itself
+is known to, on a ring of cubes.
 """
 
 from collections.abc import Iterator
