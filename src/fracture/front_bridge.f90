@@ -3,6 +3,7 @@ module xmpm_front_bridge
    use xmpm_kinds, only: wp
    use xmpm_front, only: front_t
    use xmpm_front_line, only: front_limits_t
+   use xmpm_material_test, only: material_test_t
    use xmpm_front_strip, only: strip_between
    use xmpm_surface_draft, only: draft_t, add_vertex, add_triangles
    implicit none
@@ -13,22 +14,26 @@ module xmpm_front_bridge
 contains
 
    !> Rows of triangles between two fronts that have met, no longer than segments may be.
-   subroutine join_chains(front, chain, other, limits, draft)
-      type(front_t), intent(in) :: front             !! fronts of one crack
-      integer, intent(in) :: chain, other            !! the two of them
+   !>
+   !> If that did not hold, without what hangs out at the ends, and then in one row.
+   subroutine join_chains(front, chain, other, limits, material, attempt, draft)
+      type(front_t), intent(in) :: front               !! fronts of one crack
+      integer, intent(in) :: chain, other              !! the two of them
       type(front_limits_t), intent(in) :: limits
-      type(draft_t), intent(inout) :: draft          !! gets the triangles
+      class(material_test_t), intent(in) :: material   !! where material is
+      integer, intent(in) :: attempt                   !! 1, 2 without the ends, 3 in one row
+      type(draft_t), intent(inout) :: draft            !! gets the triangles
       integer, allocatable :: tri(:, :), row(:), next(:), far(:)
       real(wp) :: part
       integer :: i, k, first, last, rows, from
 
-      first = front%chain_offset(chain)
-      last = front%chain_offset(chain + 1) - 1
-      far = [(front%vertex(i), i=front%chain_offset(other + 1) - 1, front%chain_offset(other), -1)]
+      call ends_of_line(front, other, material, attempt > 1, first, last)
+      far = [(front%vertex(i), i=last, first, -1)]
+      call ends_of_line(front, chain, material, attempt > 1, first, last)
       row = front%vertex(first:last)
       rows = 1
-      if (.not. front%closed(chain)) rows = max(1, nint(mean_gap(front, chain, far, draft) &
-         /limits%longest))
+      if (.not. front%closed(chain) .and. attempt < 3) rows = max(1, &
+         nint(mean_gap(row, far, draft)/limits%longest))
       do k = 1, rows
          next = far
          part = 1.0_wp/real(rows - k + 1, wp)
@@ -46,21 +51,39 @@ contains
       end do
    end subroutine join_chains
 
-   !> Mean distance between the nodes of a chain and the places opposite to them.
-   pure function mean_gap(front, chain, far, draft) result(gap)
+   !> First and last node of a chain, or of what is left of it with one node outside at each end.
+   pure subroutine ends_of_line(front, chain, material, trimmed, first, last)
       type(front_t), intent(in) :: front
-      integer, intent(in) :: chain, far(:)
+      integer, intent(in) :: chain
+      class(material_test_t), intent(in) :: material
+      logical, intent(in) :: trimmed
+      integer, intent(out) :: first, last
+
+      first = front%chain_offset(chain)
+      last = front%chain_offset(chain + 1) - 1
+      if (.not. trimmed .or. front%closed(chain)) return
+      do while (first < last - 1)
+         if (material%inside(front%x(:, first + 1))) exit
+         first = first + 1
+      end do
+      do while (last > first + 1)
+         if (material%inside(front%x(:, last - 1))) exit
+         last = last - 1
+      end do
+   end subroutine ends_of_line
+
+   !> Mean distance between the vertices of a line and the places opposite to them.
+   pure function mean_gap(row, far, draft) result(gap)
+      integer, intent(in) :: row(:), far(:)
       type(draft_t), intent(in) :: draft
       real(wp) :: gap
-      integer :: i, n
+      integer :: i
 
-      n = front%chain_offset(chain + 1) - front%chain_offset(chain)
       gap = 0
-      associate (row => front%vertex(front%chain_offset(chain):front%chain_offset(chain + 1) - 1))
-         do i = 1, n
-            gap = gap + norm2(opposite(row, i, far, draft) - draft%x(:, row(i)))/real(n, wp)
-         end do
-      end associate
+      do i = 1, size(row)
+         gap = gap + norm2(opposite(row, i, far, draft) - draft%x(:, row(i))) &
+            /real(size(row), wp)
+      end do
    end function mean_gap
 
    !> The place of a line at the same part of its length as a vertex of another has.

@@ -74,14 +74,14 @@ contains
 
       call make_plan(front, advance, waits, limits, material, plan)
       do attempt = 1, attempts
-         call draw(surface, front, plan, limits, material, draft, grown%joined)
+         call draw(surface, front, plan, limits, material, attempt, draft, grown%joined)
          call finish_draft(surface, draft, grown%surface, error)
          if (allocated(error)) return
          call check_new_triangles(grown%surface, surface%triangle_count + 1, grown%quality, error)
          if (.not. allocated(error)) exit
          call hold_outside(front, draft, surface%triangle_count, grown%quality%faulty, material, &
             plan, changed)
-         if (.not. changed) return
+         if (.not. changed .and. (grown%joined == 0 .or. attempt > 2)) return
       end do
       if (allocated(error)) return
       grown%met = plan%partner > 0
@@ -117,12 +117,13 @@ contains
    end subroutine make_plan
 
    !> Draw the surface that a plan leads to.
-   subroutine draw(surface, front, plan, limits, material, draft, joined)
+   subroutine draw(surface, front, plan, limits, material, attempt, draft, joined)
       type(surface_t), intent(in) :: surface
       type(front_t), intent(in) :: front
       type(plan_t), intent(in) :: plan
       type(front_limits_t), intent(in) :: limits
       class(material_test_t), intent(in) :: material
+      integer, intent(in) :: attempt
       type(draft_t), intent(out) :: draft
       integer, intent(out) :: joined
       integer :: chain, other
@@ -133,7 +134,7 @@ contains
          other = ready_to_join(front, chain, plan%partner, plan%near, material)
          if (other > 0) then
             if (other < chain) cycle
-            call join_chains(front, chain, other, limits, draft)
+            call join_chains(front, chain, other, limits, material, attempt, draft)
             joined = joined + 1
          else if (ready_to_close(front, chain, limits)) then
             call close_chain(front, chain, draft)
