@@ -5,7 +5,7 @@ module xmpm_front_values
    use xmpm_front_points, only: front_points_t
    use xmpm_domain_integral, only: domain_sums_t, domain_shape_t, plateau_area
    use xmpm_velocity_functions, only: elastic_constants_t, elastic_constants, velocity_functions, &
-      split_rate
+      split_rate, release_rate
    use xmpm_rates, only: rates_t
    use xmpm_hoop_stress, only: hoop_stress_t
    use xmpm_opening, only: opening_behind
@@ -117,12 +117,29 @@ contains
       if (.not. opening(1) > 0) k(1, :, 0) = 0
       if (values%speed(i) > 0) k(:, :, 0) = k(:, :, 1)
       values%k(:, i) = k(:, n, 1)
+      if (opening(1) > 0) values%k(:, i) = scaled_to_rate(values%material(i), a, rates%j(n, 1, i), &
+         [0.5_wp*(k(:2, n, 1) + k(:2, n, 0)), k(3, n, 1)], k(:, n, 1))
       do r = 1, 3
-         values%k_bar(:, r, i) = [minval(k(r, :n, :)), maxval(k(r, :n, :))]
+         values%k_bar(:, r, i) = [min(minval(k(r, :n, :)), values%k(r, i)), &
+            max(maxval(k(r, :n, :)), values%k(r, i))]
       end do
       values%radius(i) = shape%radius(n)
       call judge(values, i)
    end subroutine values_of_point
+
+   !> Factors in the proportion of `k` with the energy release rate g; `otherwise` where `k` is 0.
+   pure function scaled_to_rate(e, a, g, k, otherwise) result(scaled)
+      type(elastic_constants_t), intent(in) :: e
+      real(wp), intent(in) :: a(3)           !! velocity functions
+      real(wp), intent(in) :: g              !! energy release rate [energy/length^2]
+      real(wp), intent(in) :: k(3)           !! [stress length^(1/2)]
+      real(wp), intent(in) :: otherwise(3)   !! [stress length^(1/2)]
+      real(wp) :: scaled(3), rate
+
+      scaled = otherwise
+      rate = release_rate(e, a, k)
+      if (rate > 0) scaled = k*sqrt(max(g, 0.0_wp)/rate)
+   end function scaled_to_rate
 
    !> E/(1 - nu**2) (I + nu e_33) with the interaction I of a unit line force and the strain along
    !> the front at its points, of a fit.
