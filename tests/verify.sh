@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Cases against reference solutions: accuracy and cost on one line.
 #
-#    bash tests/verify.sh [CASE ...] [--full] [--list]
+#    bash tests/verify.sh [CASE ...] [--full] [--jobs N] [--list]
 #
 # Builds the program for this machine (preset native), runs the named cases or all, prints a table
-# and writes verification.csv. Ends with 1 where an error passes its limit or a run fails. --full
+# and writes verification.csv. As many cases run at a time as there are cores. Ends with 1 where an error passes its limit or a run fails. --full
 # adds the sizes that take hours.
 set -euo pipefail
 

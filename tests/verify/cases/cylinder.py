@@ -46,7 +46,7 @@ DECK = """
 def rows(full: bool) -> Iterator[Row]:
     """Amplitude of each mode, the worst difference and its rms along the front."""
     along = np.array([np.cos(SLOPE), 0.0, -np.sin(SLOPE)])  # along x across = normal
-    for h in (2.5, 2.0, 1.0) if full else (2.5, 2.0, 45 / 27):
+    for h in (2.5, 2.0, 1.0) if full else (20 / 7, 2.5, 2.0):
         deck = fill(
             DECK,
             h=h,

@@ -62,7 +62,7 @@ def places(h: float) -> dict[str, dict]:
 def static_rows(full: bool) -> Iterator[Row]:
     """Mean and worst point of K_I at each place."""
     box = None
-    for cells in (6, 9, 12) if full else (6, 7, 9):
+    for cells in (6, 9, 12) if full else (6, 7, 8):
         h = RADIUS / cells
         for place, options in places(h).items():
             run = run_deck(make_deck(cells, WIDTHS[0], quarter=False, **options))
@@ -117,7 +117,7 @@ def difference(moved: Front, still: Front) -> float:
 def moving_rows(full: bool) -> Iterator[Row]:
     """The block that flies and the block that turns against the block at rest."""
     for shape, cells in itertools.product(
-        ("linear", "gimp"), (6, 9, 12, 16) if full else (6, 9, 12)
+        ("linear", "gimp"), (6, 9, 12, 16) if full else (6, 8, 10)
     ):
         end = 7.5 * cells  # three crossings of half the block
         _, still = follow(cells, end, 0.01, shape=shape)
