@@ -67,7 +67,7 @@ def change_deck(deck, h, coarse):
     """A deck with another size of cells, cracks from files and, if coarse, a few steps only."""
     deck = replace_once(r"(?m)^  h = [0-9.]+", f"  h = {h:g}", deck)
     deck = re.sub(
-        r"(?m)^\*CRACK (\S+).*\n(?:(?!\*|  ramp).*\n)+",
+        r"(?m)^\*CRACK (\S+).*\n(?:(?!\*|  ramp|  contact).*\n)+",
         lambda block: f'*CRACK {block[1]}\n  file = "{block[1]}.h5"\n',
         deck,
     )

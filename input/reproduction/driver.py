@@ -74,7 +74,7 @@ def rows_of(results: list[Result]) -> list[str]:
     ]
     for r in results:
         reference = "" if r.reference is None else as_text(r.reference)
-        error = "" if r.error is None else f"{100 * r.error:.2g} %"
+        error = "" if r.error is None else f"{100 * round(r.error, 7):.2g} %"
         lines.append(
             f"| {r.h:g} | {r.quantity} | {as_text(r.value)} | {reference} | {error} | {r.source} "
             f"| {r.cpu_s:.0f} |"

@@ -6,7 +6,11 @@ of the shear, so that slip and K_II are (tau - mu p)/tau of the frictionless one
 the width drops out. Without friction K_II is tau sqrt(pi a), compared after the width of two slabs
 is removed. Friction depends on the way, so nothing may overshoot: damping is above critical, and
 XPIC(2) takes what no node sees. The opening must be 0, the faces overlap by 1e-3 h at most, and K
-of a crack in tension be the same to 1e-6 with contact. K_II from J stands beside.
+of a crack in tension be the same to 1e-6 with contact.
+
+K_II from J is too large with friction, by 22 % at mu = 0.3 and a = 10 h (0.609 where 0.5 is right),
+less with smaller cells: a known miss. Traction on the faces works in J on the slip there; J reads
+the slip gradient at particles 0.25 to 1.75 cells off the faces, which near the front is smaller.
 """
 
 from collections.abc import Iterator
@@ -43,7 +47,7 @@ DECK = """
 *BOUNDARY plane = z h, type = symmetry
 *TIME end = @end@, transfer = xpic
 *DAMPING viscous = @damping@
-*HEALTH energy = 0.05
+*HEALTH energy = 0
 *FRACTURE at = @end@, radii = 3*h 4*h 5*h
 *OUTPUT particles = none, crack = opening
 *END
@@ -103,7 +107,13 @@ def sliding(h: float, wanted: bool) -> Iterator[Row]:
         case = ("friction", f"mu = {mu}", h, run)
         limit = 0.02 if wanted else None
         yield Row.of(*case, "slip / frictionless", slip_of(run) / slip, part, limit)
-        yield Row.of(*case, "K_II / frictionless, from J", k_of(run, "K_II") / k, part, None)
+        yield Row.of(
+            *case,
+            "K_II / frictionless, from J",
+            k_of(run, "K_II") / k,
+            part,
+            0.05 if wanted else None,
+        )
         least, most = across(run).min() / h, across(run).max() / h
         yield Row.of(*case, "overlap [cells]", -least, 0.0, 1e-3, max(0.0, -least))
         yield Row.of(*case, "opening [cells]", most, 0.0, 1e-3, max(0.0, most))
