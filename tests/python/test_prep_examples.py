@@ -89,8 +89,9 @@ def test_the_prepared_deck_reads_the_prepared_cracks(name):
     changed = prepare.change_deck(deck, 3.5, coarse=True)
     assert re.search(r"(?m)^  h = 3\.5\b", changed)
     assert re.search(r"(?m)^\*TIME steps = 5, end", changed)
-    blocks = re.findall(r"(?m)^\*CRACK (\S+)\n  file = \"(.*)\.h5\"\n(?=\*|  ramp)", changed)
-    assert changed.count("ramp_end") == deck.count("ramp_end")
+    blocks = re.findall(r"(?m)^\*CRACK (\S+)\n  file = \"(.*)\.h5\"\n(?=\*|  ramp|  contact)", changed)
+    for key in ("ramp_end", "contact ="):
+        assert changed.count(key) == deck.count(key)
     assert blocks == [(crack, crack) for crack in prepare.EXAMPLES[name].cracks]
     # What is no crack, no cell size and no length of the run stays as it is.
     others = re.compile(r"(?m)^\*(?!CRACK)(?!PARAMETER)(?!TIME)\w+.*\n(?:(?!\*).*\n)+")
