@@ -418,7 +418,7 @@ contains
          boundary%set = bit_of_set(m, deck, block, plans, sets)
          allocate (boundary%rows(0))
       end if
-      call read_holds(deck, block, boundary)
+      call read_holds(block, boundary)
    end subroutine read_boundary
 
    !> A plane must be one of grid nodes; the side without material is found. Collective.
@@ -453,41 +453,26 @@ contains
    end subroutine check_plane
 
    !> Components and values of a condition.
-   subroutine read_holds(deck, block, boundary)
-      type(deck_t), intent(inout) :: deck
+   subroutine read_holds(block, boundary)
       type(block_t), intent(in) :: block
       type(boundary_t), intent(inout) :: boundary
       character(len=:), allocatable :: kind
-      real(wp), allocatable :: value(:)
-      integer :: d, n
 
       kind = lower(text_of(block, 'type'))
       select case (kind)
       case ('fixed')
          boundary%holds = .true.
       case ('roller', 'symmetry')
-         if (boundary%region /= region_plane) then
-            call complain(deck, block, 'type', kind//' needs plane = x|y|z VALUE, since it '// &
-               'holds the normal direction; a box or a set can be fixed, or given a velocity '// &
-               'by components')
+         if (boundary%region == region_plane) then
+            boundary%holds(boundary%axis) = .true.
+         else
+            boundary%holds = .true.   ! those that the deck names
          end if
-         boundary%holds(boundary%axis) = .true.
       case default
          boundary%accelerates = kind == 'acceleration'
          boundary%holds = components_of(block)
          if (.not. has(block, 'value')) return
-         value = reals_of(block, 'value')
-         if (size(value) /= 3 .and. size(value) /= count(boundary%holds)) then
-            call complain(deck, block, 'value', 'give 3 numbers, or one for each of the '// &
-               to_text(count(boundary%holds))//' components')
-            return
-         end if
-         n = 0
-         do d = 1, 3
-            if (.not. boundary%holds(d)) cycle
-            n = n + 1
-            boundary%value(d) = value(merge(d, n, size(value) == 3))
-         end do
+         boundary%value = merge(reals_of(block, 'value'), 0.0_wp, boundary%holds)
       end select
       if (has(block, 'components')) boundary%holds = boundary%holds .and. components_of(block)
    end subroutine read_holds

@@ -28,6 +28,8 @@ program test_boundary
       [.false., .true., .true.], [0.0_wp, 5.0_wp, -6.0_wp])
    call try('box', '*BOUNDARY box=-1 -1 -1 2 9 9 type=fixed|', 2.0_wp, [.true., .true., .true.], &
       [0.0_wp, 0.0_wp, 0.0_wp])
+   call try('roller in a box', '*BOUNDARY box=-1 -1 -1 2 9 9 type=roller components=xz|', 2.0_wp, &
+      [.true., .false., .true.], [0.0_wp, 0.0_wp, 0.0_wp])
    call finish(suite)
    call stop_parallel(comm, 0)
 

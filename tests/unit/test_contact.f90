@@ -207,8 +207,13 @@ contains
       call refused(bodies//'*CRACK c disc centre=1 1 1 along=1 0 0 across=0 1 0 radius=1 ' &
          //'contact=friction', "needs 'friction'")
       call refused(bodies//'*CONTACT bodies=beam', 'two bodies at least')
-      call refused(bodies//'*CONTACT bodies=beam beam', 'named twice')
-      call refused(bodies//'*BODY ball material=soft sphere=2 4 1 1 rigid', 'in a *CONTACT')
+      call refused(bodies//'*CONTACT bodies=beam beam', &
+         "the body 'beam' is named twice")
+      call refused(bodies//'*CONTACT bodies=all normal=0 0 0', 'normal: it has no direction')
+      call refused(bodies//'*BODY ball material=soft sphere=2 4 1 1 rigid spin=0 0 1', &
+         'a rigid body moves without turning')
+      call refused(bodies//'*BODY ball material=soft sphere=2 4 1 1 rigid', &
+         'a rigid body shares no grid nodes')
       call refused(bodies//'*BODY ball material=soft sphere=2 4 1 1 mass=2', 'belongs to a rigid')
       call refused(bodies//'*BODY ball material=soft sphere=2 4 1 1 rigid held=xw|' &
          //'*CONTACT bodies=all', 'letters x, y, z')

@@ -1,6 +1,7 @@
 !> Cracks from STL and HDF5 files: what comes back, and the messages about broken files.
 program test_crack_file
    use, intrinsic :: iso_fortran_env, only: int8, int16, int32, real32
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use xmpm_kinds, only: wp, i8
    use xmpm_error, only: error_t
    use xmpm_surface, only: surface_t, build_surface, surface_area
@@ -201,7 +202,8 @@ contains
       call try_text('')
       call check_error(suite, 'an empty file is refused', error, 'there are no facets')
       call try_text('solid a|facet normal 0 0 1|outer loop|vertex 0 0 0|vertex 1 0 0|vertex 0 1 0')
-      call check_error(suite, 'an ASCII STL file cut short is refused', error, 'endsolid')
+      call check_error(suite, 'an ASCII STL file cut short is refused', error, &
+         "'endsolid' is missing")
       call try_text('solid a|facet normal 0 0 1|outer loop|vertex 0 0 0|vertex 1 0 0|endloop')
       call check_error(suite, 'a facet of two vertices is refused', error, &
          'crack.stl:6: a facet needs three')
@@ -249,6 +251,11 @@ contains
       call write_hdf5('xmpm3d crack', 1_i8, 'mm', vertices(:2, :), wrong)
       call check_error(suite, 'vertices of two coordinates are refused', error, &
          'vertices must have rows of three')
+      vertices(2, 2) = ieee_value(1.0_wp, ieee_quiet_nan)
+      call write_hdf5('xmpm3d crack', 1_i8, 'mm', vertices, wrong)
+      call check_error(suite, 'a vertex that is no number is refused', error, &
+         'vertices[1] is not finite')
+      vertices(2, 2) = 0
       wrong(3, 1) = -1
       call write_hdf5('xmpm3d crack', 1_i8, 'mm', vertices, wrong)
       call check_error(suite, 'a negative vertex is refused', error, 'vertices are 0 to 2')

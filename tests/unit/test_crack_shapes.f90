@@ -223,11 +223,13 @@ contains
       call check_error(suite, 'a sector that runs backwards is refused', error, 'by 360 at most')
       call make_polygon(in_space(reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp], [2, 2])), 0.1_wp, x, &
          tri, error)
-      call check_error(suite, 'a polygon of two points is refused', error, 'at least 3')
+      call check_error(suite, 'a polygon of two points is refused', error, &
+         'at least 3 are needed')
       corners = in_space(reshape([0.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 2.5_wp, &
          3.0_wp], [2, 4]))
       call make_polygon(corners, 0.1_wp, x, tri, error)
-      call check_error(suite, 'a polygon that crosses itself is refused', error, 'simple')
+      call check_error(suite, 'a polygon that crosses itself is refused', error, &
+         'it must be simple')
       corners = in_space(reshape([0.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 1.0_wp, 0.0_wp, &
          1.0_wp], [2, 4]))
       corners(:, 3) = corners(:, 3) + 0.1_wp*cross(plane%along, plane%across)

@@ -416,6 +416,8 @@ contains
       call refuse_crack('polygon points=0 0 0 1 0 0 2 0 0', 'the corners enclose no area')
       call refuse_crack('polygon points=0 0 0 1 0 0 1 1 0 0 1 1', &
          'lies outside of the plane of the others')
+      call refuse_crack('disc '//plane//'radius=1 friction=0.3', &
+         'it belongs to contact = friction')
       call refuse_crack('file=a.obj', "'a.obj' is neither a .stl nor a .h5 file")
       call refuse('*BOUNDARY plane=z 0 type=symmetry|*CRACK c disc radius=1 '//plane//'|', &
          '*CRACK c: the crack lies in the symmetry plane z = 0: model both halves without ' &

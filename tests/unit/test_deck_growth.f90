@@ -59,7 +59,8 @@ contains
          'no body has a toughness')
       call blames('a toughness that nobody asks for', plain// &
          '*GROWTH criterion=straight, law=speed, speed=3, toughness=20', 'does not ask for it')
-      call blames('K without *FRACTURE', plain//'*GROWTH toughness=20', 'asks for K')
+      call blames('K without *FRACTURE', plain//'*GROWTH toughness=20', &
+         'this growth asks for K')
       call blames('growth without a crack', plain(:index(plain, '*CRACK') - 1)// &
          '*GROWTH criterion=straight, law=speed, speed=3', 'no *CRACK that could grow')
    end subroutine refuses

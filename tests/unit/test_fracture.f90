@@ -40,8 +40,10 @@ contains
       call refuse(start//plate//cut//'*FRACTURE every = 1, cracks = cut', 'has no front')
       call refuse(start//plate//cut//'*FRACTURE every = 1', 'no crack of this deck has a front')
       call refuse(start//plate//slit//'*FRACTURE every = 1, radii = 1.2 3', 'at least 2 cells')
-      call refuse(start//plate//slit//'*FRACTURE every = 1, radii = 4 3', 'must grow')
-      call refuse(start//plate//slit//'*FRACTURE every = 1, methods = paper paper', 'twice')
+      call refuse(start//plate//slit//'*FRACTURE every = 1, radii = 4 3', &
+         'the radii must grow from one')
+      call refuse(start//plate//slit//'*FRACTURE every = 1, methods = paper paper', &
+         "the method 'paper' is named twice")
       call refuse(start//plate//slit//'*FRACTURE every = 1, radii = 3 40', 'larger than the bodies')
    end subroutine refused
 

@@ -185,10 +185,57 @@ contains
       call read_dataset(file, 'a/b/reals', values, first=1_i8, count=99_i8)
       call close_file(file, error)
       call check_error(suite, 'a slab beyond the end is reported', error, 'ends at entry')
+      call test_wrong_kinds(suite, 'test_kinds_'//to_text(comm%size) &
+         //to_text(comm%rank)//'.h5')
       call open_file(file, path, error, comm)
       if (comm%rank == 0) call write_attribute(file, '/', 'x', 1_i8)
       call close_file(file, error)
       call check_error(suite, 'all ranks hear of the failure of one', error, &
          'cannot make the attribute x')
    end subroutine test_failures
+
+   !> Things that are there already, or are of another kind.
+   subroutine test_wrong_kinds(suite, path)
+      type(suite_t), intent(inout) :: suite
+      character(len=*), intent(in) :: path
+      type(hdf5_file_t) :: file
+      type(error_t), allocatable :: error
+      type(string_t), allocatable :: texts(:)
+      real(wp), allocatable :: values(:)
+      real(wp) :: value
+      integer :: i
+
+      do i = 1, 3
+         call create_file(file, path, error)
+         call make_group(file, 'a')
+         call write_dataset(file, 'x', [1.0_wp])
+         if (i == 1) call make_group(file, 'a')
+         if (i == 2) call write_dataset(file, 'x', [1.0_wp])
+         if (i == 3) call write_attribute(file, 'none', 'x', 1.0_wp)
+         call close_file(file, error)
+         if (i == 1) call check_error(suite, 'a group twice', error, 'cannot make the group a')
+         if (i == 2) call check_error(suite, 'a dataset twice', error, 'cannot make the dataset x')
+         if (i == 3) call check_error(suite, 'an object that is not there', error, &
+            'cannot open none')
+      end do
+      call create_file(file, path, error)
+      call write_dataset(file, 'x', [1.0_wp])
+      allocate (texts(1))
+      texts(1)%s = 'one'
+      call write_texts(file, 'texts', texts)
+      call write_attribute(file, '/', 'text', 'one')
+      call close_file(file, error)
+      call open_file(file, path, error)
+      call read_texts(file, 'x', texts)
+      call close_file(file, error)
+      call check_error(suite, 'numbers are no texts', error, 'x does not hold readable texts')
+      call open_file(file, path, error)
+      call read_dataset(file, 'texts', values)
+      call close_file(file, error)
+      call check_error(suite, 'texts are no numbers', error, 'cannot read the dataset texts')
+      call open_file(file, path, error)
+      call read_attribute(file, '/', 'text', value)
+      call close_file(file, error)
+      call check_error(suite, 'a text is no number', error, 'cannot read the attribute text')
+   end subroutine test_wrong_kinds
 end program test_hdf5_file

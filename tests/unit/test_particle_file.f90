@@ -238,7 +238,8 @@ contains
       deallocate (c%x)
       call expect(c, 'the dataset positions is missing')
       c%x = reshape([0.0_wp, 0.0_wp], [2, 1])
-      call expect(c, 'the dataset positions has shape (1,2) instead of (10,3)')
+      call expect(c, &
+         'the dataset positions has shape (1,2) instead of (10,3), n being that of volumes')
       c = right_content()
       deallocate (c%volume)
       call expect(c, 'the dataset volumes is missing')

@@ -157,26 +157,33 @@ contains
    end subroutine void_follows
 
    subroutine messages()
+      real(wp) :: raised(3, 5)
+
       call build_surface(corners, reshape([1, 2, 3, 1, 3, 4, 3, 2, 1], [3, 3]), surface, error)
       call check_error(suite, 'a triangle that is there twice is refused', error, &
          'triangles 1 and 3 have the same three')
       call build_surface(corners(:, 1:4), reshape([1, 2, 3, 1, 4, 3], [3, 2]), surface, error)
       call check_error(suite, 'a triangle turned over is refused', error, &
-         'triangles 1 and 2 run along')
-      call build_surface(corners, reshape([1, 2, 3, 1, 3, 4, 3, 1, 5], [3, 3]), surface, error)
-      call check_error(suite, 'a third triangle at an edge is refused', error, 'triangle 3')
+         'run along their common edge in the same direction')
+      raised = corners
+      raised(3, 5) = 1
+      call build_surface(raised, reshape([1, 2, 3, 1, 3, 4, 3, 1, 5], [3, 3]), surface, error)
+      call check_error(suite, 'a third triangle at an edge is refused', error, &
+         'is the third at the edge')
       call build_surface(corners, reshape([1, 2, 3, 1, 3, 5], [3, 2]), surface, error)
       call check_error(suite, 'a triangle without area is refused', error, &
-         'triangle 2 at 0 0 0 is degenerate')
+         'is degenerate (it has no area)')
       call build_surface(corners, reshape([1, 2, 2], [3, 1]), surface, error)
       call check_error(suite, 'a triangle that names a vertex twice is refused', error, &
          'triangle 1')
       call build_surface(corners, reshape([1, 2, 6], [3, 1]), surface, error)
       call check_error(suite, 'an unknown vertex is refused', error, 'allowed are 1 to 5')
       call build_surface(corners, reshape([1, 2, 3], [3, 1]), surface, error)
-      call check_error(suite, 'a vertex without triangle is refused', error, 'vertex 4')
+      call check_error(suite, 'a vertex without triangle is refused', error, &
+         'belongs to no triangle')
       call build_surface(corners(:, :0), reshape([1], [3, 0]), surface, error)
-      call check_error(suite, 'a surface without triangles is refused', error, 'no triangle')
+      call check_error(suite, 'a surface without triangles is refused', error, &
+         'it has no triangle; at least one')
       call build_surface(reshape([corners, corners + 3.0_wp], [3, 10]), &
          reshape([1, 2, 4, 3, 5, 10, 3, 8, 9, 3, 6, 7], [3, 4]), &
          surface, error)
