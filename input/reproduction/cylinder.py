@@ -31,7 +31,7 @@ ALONG = np.array([np.cos(SLOPE), 0.0, -np.sin(SLOPE)])
 
 def reproduce(study: Study) -> Iterator[Result]:
     """Amplitudes of the three modes, and figure 15."""
-    done = study.run("cylinder-penny")
+    done = study.run("cylinder-penny", 2.5 if study.size == "everyday" else None)
     front = read_front(done.cost)
     points = front.points[-1]
     stress = tension(PULL, np.array([0.0, 0.0, 1.0]))

@@ -89,6 +89,8 @@ def write_page(output: Path, results: list[Result]) -> None:
         module = example(case)
         body = "\n".join((module.__doc__ or "").strip().splitlines()[1:]).strip()
         parts = [f"## {title(case)}", body]
+        if not any(r.case == case for r in results):
+            parts.append(f"Not run for this table yet: `bash input/reproduce.sh {case}`.")
         for size in SIZES:
             found = [r for r in results if r.case == case and r.size == size]
             if found:

@@ -89,7 +89,9 @@ def test_the_prepared_deck_reads_the_prepared_cracks(name):
     changed = prepare.change_deck(deck, 3.5, coarse=True)
     assert re.search(r"(?m)^  h = 3\.5\b", changed)
     assert re.search(r"(?m)^\*TIME steps = 5, end", changed)
-    blocks = re.findall(r"(?m)^\*CRACK (\S+)\n  file = \"(.*)\.h5\"\n(?=\*|  ramp|  contact)", changed)
+    blocks = re.findall(
+        r"(?m)^\*CRACK (\S+)\n  file = \"(.*)\.h5\"\n(?=\*|  ramp|  contact)", changed
+    )
     for key in ("ramp_end", "contact ="):
         assert changed.count(key) == deck.count(key)
     assert blocks == [(crack, crack) for crack in prepare.EXAMPLES[name].cracks]
