@@ -43,6 +43,8 @@ module xmpm_growth
       real(wp), allocatable :: k(:, :)                !! (3,nn) modes I II III, averaged once
       real(wp), allocatable :: k_twice(:, :)          !! (3,nn) and that averaged again
       real(wp), allocatable :: rate(:)                !! (nn) energy release rate, as found last
+      real(wp), allocatable :: width(:)               !! (nn) length of the front in the material
+                                                      !! that goes with a node [length]
       real(wp), allocatable :: kink(:)                !! (nn) of the criterion [rad]
       real(wp), allocatable :: twist(:)               !! (nn) of the criterion [rad]
       real(wp), allocatable :: intensity(:)           !! (nn) K* of the criterion
@@ -187,7 +189,8 @@ contains
       end do
    end subroutine follow_inside
 
-   !> Add G dA of a step: the way of each node over half of both its segments.
+   !> Add G dA of a step: the way of each node over half of both its segments, of what lies in the
+   !> material where that is known.
    subroutine note_energy(growth, front, way)
       type(growth_t), intent(inout) :: growth
       type(front_t), intent(in) :: front
@@ -195,6 +198,11 @@ contains
       real(wp) :: half
       integer :: e, i
 
+      if (allocated(growth%width)) then
+         growth%area = growth%area + sum(growth%width*way)
+         growth%energy = growth%energy + sum(growth%rate*growth%width*way)
+         return
+      end if
       do e = 1, front%edge_count
          associate (node => front%edge_node(:, e))
             half = 0.5_wp*norm2(front%x(:, node(2)) - front%x(:, node(1)))
@@ -255,6 +263,7 @@ contains
 
       before = growth
       n = grown%front%node_count
+      if (allocated(growth%width)) deallocate (growth%width)
       deallocate (growth%k, growth%k_twice, growth%rate, growth%kink, growth%twist, &
          growth%intensity, &
          growth%toughness, &

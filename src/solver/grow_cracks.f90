@@ -19,7 +19,7 @@ module xmpm_grow_cracks
    implicit none
    private
 
-   public :: grow_cracks, judge_fronts, know_nodes, trace_ahead
+   public :: grow_cracks, judge_fronts, note_rates, know_nodes, trace_ahead
 
    integer, parameter :: look = 4   !! bins around a front where material is looked for
 
@@ -71,7 +71,42 @@ contains
          end do
       end associate
       call take_intensities(m%growth(g), k, rate, m%time)
+      call note_widths(m, g, which)
    end subroutine take_values
+
+   !> Energy release rates of fronts whose law asks for no K, as just measured for the output.
+   subroutine note_rates(m)
+      type(model_t), intent(inout) :: m
+      integer :: g, which
+
+      if (.not. allocated(m%growth)) return
+      do g = 1, size(m%growth)
+         which = findloc(m%fracture%cracks, m%growth(g)%crack, 1)
+         if (m%growth(g)%ended .or. m%growth(g)%needs_intensity .or. which == 0) cycle
+         m%growth(g)%rate = max(0.0_wp, m%fracture%values(which)%j)
+         call note_widths(m, g, which)
+      end do
+   end subroutine note_rates
+
+   !> Length of the front that goes with each node: half the way to both neighbours, where the last
+   !> nodes stand where the material ends.
+   subroutine note_widths(m, g, which)
+      type(model_t), intent(inout) :: m
+      integer, intent(in) :: g, which
+      real(wp), allocatable :: width(:)
+      integer :: e
+
+      associate (front => m%cracks(m%growth(g)%crack)%front, &
+         x => m%fracture%values(which)%points%x)
+         allocate (width(front%node_count), source=0.0_wp)
+         do e = 1, front%edge_count
+            associate (node => front%edge_node(:, e))
+               width(node) = width(node) + 0.5_wp*norm2(x(:, node(2)) - x(:, node(1)))
+            end associate
+         end do
+      end associate
+      call move_alloc(width, m%growth(g)%width)
+   end subroutine note_widths
 
    pure function nearest_known(x, known, i) result(best)
       real(wp), intent(in) :: x(:, :)

@@ -13,7 +13,7 @@ module xmpm_run
    use xmpm_stages, only: measure_fronts
    use xmpm_ledger, only: take_balance
    use xmpm_settle, only: settle, choose_step
-   use xmpm_grow_cracks, only: judge_fronts
+   use xmpm_grow_cracks, only: judge_fronts, note_rates
    use xmpm_overlap, only: overlap_of_faces
    use xmpm_relax, only: relax
    use xmpm_fracture, only: fracture_t, release_range
@@ -124,6 +124,7 @@ contains
       slack = 1e-9_wp*m%options%end_time
       if (is_due(m%fracture, m%time, agenda%fronts - slack, last)) then
          call measure_fronts(m)
+         call note_rates(m)
          call write_front_values(results, m)
          agenda%fronts = fronts_due(m%fracture%every, m%fracture%at, m%time, slack)
       end if
