@@ -169,7 +169,7 @@ contains
       call check_close(suite, 'contact of the faces changes nothing in tension', met(1), free(1), &
          0.0_wp, 1e-6_wp)
       call check(suite, 'without contact the faces pass each other', open (2) < -1e-3_wp)
-      ! At most a thousandth of a cell is the target; 2.6e-4 measured in this undamped shock.
+      ! At most a thousandth of a cell is the target; 1.4e-4 measured in this undamped shock.
       call check_close(suite, 'with contact they do not', shut(2), 0.0_wp, 1e-3_wp, 0.0_wp)
    end subroutine test_faces
 
