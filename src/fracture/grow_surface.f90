@@ -190,7 +190,8 @@ contains
    end subroutine add_vertices
 
    !> Let the nodes outside that faulty triangles come from stay, and the ends of their fronts turn
-   !> about the old ones: surface outside the material has nothing to cut.
+   !> about the old ones: surface outside the material has nothing to cut. Nodes that are about to
+   !> meet another front have met it.
    subroutine hold_outside(front, draft, old_triangles, faulty, material, plan, changed)
       type(front_t), intent(in) :: front
       type(draft_t), intent(in) :: draft
@@ -212,8 +213,12 @@ contains
                changed = changed .or. .not. plan%turns(chain(node))
                plan%turns(chain(node)) = .true.
                if (plan%stays(node)) cycle
-               if (material%inside(front%x(:, node) + plan%advance(:, node)) .and. &
-                  material%inside(front%x(:, node))) cycle
+               if (plan%near(node) > 0) then
+                  plan%partner(node) = plan%near(node)
+               else if (material%inside(front%x(:, node) + plan%advance(:, node)) .and. &
+                        material%inside(front%x(:, node))) then
+                  cycle
+               end if
                plan%stays(node) = .true.
                changed = .true.
             end do

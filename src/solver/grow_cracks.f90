@@ -168,6 +168,7 @@ contains
       type(grown_t) :: grown
       real(wp), allocatable :: advance(:, :), offset(:)
       integer :: c
+      logical :: only_ahead
 
       c = m%growth(g)%crack
       call gather_crack(m%cracks(c), m%comm, m%grid, .true.)
@@ -181,13 +182,16 @@ contains
             ", crack '"//m%cracks(c)%name//"'")
          return
       end if
+      ! What was cut where a front ended or two have met is not near any front.
+      only_ahead = grown%joined == 0 .and. &
+         grown%front%chain_count == m%cracks(c)%front%chain_count
       call renew_growth(m%growth(g), grown, m%cracks(c)%offset, offset)
       call replace_surface(m%cracks(c), grown%surface, grown%front, offset, m%comm%rank, m%grid)
       call tell(m, g, grown)
       call know_nodes(m, g, error)
       if (allocated(error)) return
       call trace_ahead(m, c)
-      call find_near(m%cracks(c), c, m%grid, m%particles, error, grown=.true.)
+      call find_near(m%cracks(c), c, m%grid, m%particles, error, only_ahead)
    end subroutine regrow
 
    !> Trace the particles that the fronts of a crack will come to, long before they do.
