@@ -114,16 +114,18 @@ def pulls(run: Run, mass: float, force: float) -> tuple[float, float]:
     """Rate of the axial momentum of the upper and lower half over a force, after the cut.
 
     Both halves are then free bodies, whose momentum grows with the force on their ends alone.
-    `mass` is that of a particle. Near the crack a particle knows its side; far from it its place
-    tells.
+    `mass` is that of the body; particles share it alike, though those at a round wall are cut.
+    Near the crack a particle knows its side, of which either may be above; far from it its
+    place tells.
     """
     times = after_cut(run, "particles")
     momenta = []
     for time in (times[0], times[-1]):
         p = run.particles(time)
         side = np.asarray(p.fields["side"], dtype=float)
-        upper = np.where(np.abs(side) > 0, side, p.points[:, 2]) > 0
-        axial = mass * p.fields["velocity"][:, 2]
+        up = np.sign(p.points[side > 0, 2].mean() - p.points[side < 0, 2].mean())
+        upper = np.where(np.abs(side) > 0, up * side, p.points[:, 2]) > 0
+        axial = mass / len(side) * p.fields["velocity"][:, 2]
         momenta.append((axial[upper].sum(), axial[~upper].sum()))
     span = force * (times[-1] - times[0])
     up, down = (float(b - a) / span for a, b in zip(*momenta, strict=True))

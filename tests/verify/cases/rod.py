@@ -17,7 +17,7 @@ from verify import Row, Run, run_deck
 from verify.halves import before_and_after, columns, cut_time, pulls, shipped, uncovered
 from xmpm_post import Run as Results
 
-DENSITY, LOAD, SIDE = 7.9e-3, 400.0, 50.0
+DENSITY, LOAD, SIDE, LENGTH = 7.9e-3, 400.0, 50.0, 100.0
 
 
 def rows(full: bool) -> Iterator[Row]:
@@ -42,7 +42,7 @@ def judge(run: Run, h: float) -> Iterator[Row]:
     yield row("cut through at [us]", 1e3 * time, 40.0, None)
     bare = uncovered(results, columns(0.0, SIDE, h))
     yield row("section not covered", bare, 0.0, 0.0, bare)
-    up, down = pulls(results, DENSITY * (h / 2) ** 3, LOAD * SIDE**2)
+    up, down = pulls(results, DENSITY * LENGTH * SIDE**2, LOAD * SIDE**2)
     yield row("upper half: momentum/impulse", up, 1.0, 0.01)
     yield row("lower half: momentum/impulse", down, -1.0, 0.01)
     balance = float(np.abs(results.energy["relative_error"]).max())

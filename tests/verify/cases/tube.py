@@ -18,7 +18,7 @@ from verify import Row, Run, run_deck
 from verify.halves import before_and_after, columns, cut_time, pulls, rims, shipped, uncovered
 from xmpm_post import Run as Results
 
-DENSITY, LOAD = 7.9e-3, 400.0
+DENSITY, LOAD, LENGTH = 7.9e-3, 400.0, 100.0
 INNER, OUTER = 35.0, 45.0
 
 
@@ -58,7 +58,7 @@ def judge(run: Run, h: float) -> Iterator[Row]:
     bare = uncovered(results, places[(radius > INNER) & (radius < OUTER)])
     yield row("wall not covered", bare, 0.0, 0.0, bare)
     section = np.pi * (OUTER**2 - INNER**2)
-    up, down = pulls(results, DENSITY * (h / 2) ** 3, LOAD * section)
+    up, down = pulls(results, DENSITY * LENGTH * section, LOAD * section)
     yield row("upper half: momentum/impulse", up, 1.0, 0.01)
     yield row("lower half: momentum/impulse", down, -1.0, 0.01)
     balance = float(np.abs(results.energy["relative_error"]).max())
