@@ -25,25 +25,29 @@ contains
    !> The part V of a sub-cell below a flat face has its centroid at half its height, so its area is
    !> V / 2 d. Along a curved face the particles of a shell one sub-cell thick, whose lower edge is
    !> blurred by half a sub-cell either way, share its area in proportion to their volumes.
-   subroutine find_face(g, name, x, volume, spacing, area, error)
+   subroutine find_face(g, name, x, volume, spacing, area, offset, error)
       type(geometry_t), intent(in) :: g                  !! the body
       character(len=*), intent(in) :: name               !! +x -x +y -y +z -z side inside
       real(wp), intent(in) :: x(:, :)                    !! (3,n) particles as filled [length]
       real(wp), intent(in) :: volume(:)                  !! (n) their volumes [length^3]
       real(wp), intent(in) :: spacing                    !! edge of a sub-cell [length]
       real(wp), intent(out) :: area(:, :)                !! (3,n) outward [length^2]
+      real(wp), intent(out) :: offset(:, :)              !! (3,n) from the particle to the face,
+                                                         !! along its normal [length]
       type(error_t), allocatable, intent(out) :: error   !! the body has no such face
       integer :: i, face
 
       area = 0.0_wp
+      offset = 0.0_wp
       call check_name(g, name, error)
       if (allocated(error)) return
       face = flat_face(name)
       do i = 1, size(volume)
          if (face > 0) then
-            area(:, i) = flat_area(g, face, x(:, i), volume(i), spacing)
+            call flat_area(g, face, x(:, i), volume(i), spacing, area(:, i), offset(:, i))
          else
-            area(:, i) = wall_area(g, name == 'inside', x(:, i), volume(i), spacing)
+            call wall_area(g, name == 'inside', x(:, i), volume(i), spacing, area(:, i), &
+               offset(:, i))
          end if
       end do
    end subroutine find_face
@@ -152,29 +156,30 @@ contains
       end if
    end function wall_radius
 
-   pure function flat_area(g, face, x, volume, spacing) result(area)
+   pure subroutine flat_area(g, face, x, volume, spacing, area, offset)
       type(geometry_t), intent(in) :: g
       integer, intent(in) :: face
       real(wp), intent(in) :: x(3), volume, spacing
-      real(wp) :: area(3), depth
+      real(wp), intent(inout) :: area(3), offset(3)   !! 0 as they come
+      real(wp) :: depth
       integer :: d
 
-      area = 0.0_wp
       d = (face + 1)/2
       depth = abs(x(d) - plane_of(g, face))
       if (depth > deepest*spacing .or. depth <= 0.0_wp) return
       area(d) = merge(1.0_wp, -1.0_wp, modulo(face, 2) == 0)*volume/(2*depth)
-   end function flat_area
+      offset(d) = sign(depth, area(d))
+   end subroutine flat_area
 
    !> Share of a particle in the first wall whose shell it lies in and which bounds the body there.
-   pure function wall_area(g, inward, x, volume, spacing) result(area)
+   pure subroutine wall_area(g, inward, x, volume, spacing, area, offset)
       type(geometry_t), intent(in) :: g
       logical, intent(in) :: inward
       real(wp), intent(in) :: x(3), volume, spacing
-      real(wp) :: area(3), normal(3), depth, radius, thickness, weight
+      real(wp), intent(inout) :: area(3), offset(3)   !! 0 as they come
+      real(wp) :: normal(3), depth, radius, thickness, weight
       integer :: i
 
-      area = 0.0_wp
       do i = 1, size(g%part)
          radius = wall_radius(g%part(i), inward)
          if (radius <= 0.0_wp) cycle
@@ -188,9 +193,10 @@ contains
          if (inside(g, x + (depth + 0.01_wp*spacing)*normal)) cycle
          if (inward) thickness = -thickness
          area = weight*volume/shell_height(g%part(i), radius, thickness)*normal
+         offset = depth*normal
          return
       end do
-   end function wall_area
+   end subroutine wall_area
 
    !> How far a point lies from a wall into the material, and the wall's normal out of it.
    pure subroutine wall_depth(p, inward, x, depth, normal)

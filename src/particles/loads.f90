@@ -22,7 +22,6 @@ module xmpm_loads
    type :: load_t
       integer :: set = 0                  !! bit of its particles
       type(load_table_t) :: table         !! area vector of each particle, and where the face is
-      real(wp) :: depth = 0               !! of all particles below the face, besides [length]
       real(wp) :: traction(3) = 0         !! force on an area [stress]
       real(wp) :: pressure = 0            !! against the normal [stress]
       type(curve_t) :: curve              !! factor over time
@@ -264,8 +263,7 @@ contains
                low = corner + 0.5_wp*size
             end where
          end if
-         q(i, 1:3) = q(i, 1:3) + load%depth*area/max(norm2(area), tiny(1.0_wp)) &
-            + load%table%offset(:, at)
+         q(i, 1:3) = q(i, 1:3) + load%table%offset(:, at)
          q(i, 1:3) = max(low, min(high, q(i, 1:3)))
       end do
    end subroutine force_of_lanes

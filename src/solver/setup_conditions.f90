@@ -251,7 +251,6 @@ contains
             return
          end if
          load%set = new_bit(deck, block, ' ', sets)
-         load%depth = 0.5_wp*plans(body)%spacing
          call load_face(m, deck, block, body, plans(body), face(colon + 1:), load)
       else
          load%set = bit_of_set(m, deck, block, plans, sets)
@@ -270,14 +269,14 @@ contains
       character(len=*), intent(in) :: name
       type(load_t), intent(inout) :: load
       type(error_t), allocatable :: failure
-      real(wp), allocatable :: x(:, :), volume(:), area(:, :)
+      real(wp), allocatable :: x(:, :), volume(:), area(:, :), offset(:, :)
       integer, allocatable :: lane(:, :)
       real(wp) :: found(4)
       integer :: i
 
       call list_body(m%particles, body, lane, x, volume)
-      allocate (area(3, size(volume)))
-      call find_face(plan%geometry, name, x, volume, plan%spacing, area, failure)
+      allocate (area(3, size(volume)), offset(3, size(volume)))
+      call find_face(plan%geometry, name, x, volume, plan%spacing, area, offset, failure)
       if (allocated(failure)) then
          call complain(deck, block, 'face', failure%message)
          return
@@ -292,7 +291,7 @@ contains
       do i = 1, size(volume)
          if (any(abs(area(:, i)) > 0)) call mark(m%particles, lane(1, i), lane(2, i), load%set)
       end do
-      call gather_table(m, lane, area, 0*area, load)
+      call gather_table(m, lane, area, offset, load)
    end subroutine load_face
 
    !> Particles of a body on this rank, in storage order.

@@ -2,7 +2,7 @@
 program test_faces
    use xmpm_kinds, only: wp, pi
    use xmpm_error, only: error_t
-   use xmpm_geometry, only: geometry_t, add_primitive
+   use xmpm_geometry, only: geometry_t, add_primitive, inside
    use xmpm_body_fill, only: sub_lattice_t, fill_bins, cell_range
    use xmpm_faces, only: find_face, faces_of, sum_areas, scale_areas
    use xmpm_face_total, only: face_total
@@ -51,15 +51,30 @@ contains
       integer, intent(out) :: carriers
       type(sub_lattice_t) :: lattice
       type(error_t), allocatable :: error
-      real(wp), allocatable :: x(:, :), volume(:), area(:, :)
-      integer :: low(3), high(3)
+      real(wp), allocatable :: x(:, :), volume(:), area(:, :), offset(:, :)
+      real(wp) :: normal(3), plane
+      integer :: low(3), high(3), i, d, misses
 
       lattice%spacing = 2*edge
       call cell_range(g, lattice, low, high)
       call fill_bins(g, lattice, low, high, x, volume)
-      allocate (area(3, size(volume)))
-      call find_face(g, name, x, volume, edge, area, error)
+      allocate (area(3, size(volume)), offset(3, size(volume)))
+      call find_face(g, name, x, volume, edge, area, offset, error)
       call check_no_error(suite, 'the face '//name//' is found', error)
+      misses = 0
+      do i = 1, size(volume)
+         if (.not. any(abs(area(:, i)) > 0.0_wp)) cycle
+         if (scan(name, 'xyz') > 0) then
+            d = index('xyz', name(2:2))
+            plane = merge(g%high(d), g%low(d), name(1:1) == '+')
+            if (abs(x(d, i) + offset(d, i) - plane) > 1e-12_wp) misses = misses + 1
+         else
+            normal = 1e-3_wp*edge*area(:, i)/norm2(area(:, i))
+            if (.not. inside(g, x(:, i) + offset(:, i) - normal) &
+                .or. inside(g, x(:, i) + offset(:, i) + normal)) misses = misses + 1
+         end if
+      end do
+      call check(suite, 'the offsets end on the face '//name, misses == 0)
       carriers = count(norm2(area, dim=1) > 0.0_wp)
       raw = sum_areas(area)
       call scale_areas(area, raw, face_total(g, name))
@@ -228,9 +243,9 @@ contains
       type(geometry_t), intent(in) :: g
       character(len=*), intent(in) :: name, message
       type(error_t), allocatable :: error
-      real(wp) :: x(3, 0), volume(0), area(3, 0)
+      real(wp) :: x(3, 0), volume(0), area(3, 0), offset(3, 0)
 
-      call find_face(g, name, x, volume, edge, area, error)
+      call find_face(g, name, x, volume, edge, area, offset, error)
       call check_error(suite, "the face '"//name//"' is refused", error, message)
    end subroutine expect
 end program test_faces
