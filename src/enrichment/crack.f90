@@ -35,8 +35,9 @@ module xmpm_crack
 
    real(wp), parameter :: drift = 0.02_wp  !! relative motion after which level sets are renewed
                                            !! [cells]
-   real(wp), parameter :: close = 0.02_wp  !! particles so near to the surface keep their
-                                           !! side, at first that below [cells]
+   real(wp), parameter :: close = 0.02_wp  !! particles so near to the surface keep their side [cells]
+   real(wp), parameter :: tie = 1e-9_wp    !! particles so little above lie in the surface, which is
+                                           !! below [cells]
 
    !> One crack.
    type :: crack_t
@@ -269,7 +270,7 @@ contains
                   ' cracks are near the particle '//to_text(p%id(i, c)))
                return
             end if
-            side = merge(1.0_wp, -1.0_wp, psi > close*h)
+            side = merge(1.0_wp, -1.0_wp, psi > tie*h)
             if (nint(near(i, at + near_crack)) == number) then
                if (near(i, at + near_phi) < 0 .or. abs(psi) < close*h) then
                   side = near(i, at + near_side)

@@ -75,8 +75,8 @@ contains
       integer, allocatable :: near(:)
       integer :: i, n
 
-      near = chunks_near(crack%front, reach + merge(beyond, margin, resolve)*grid%lattice%size, &
-         grid, p)
+      call find_chunks(crack%front, reach + merge(beyond, margin, resolve)*grid%lattice%size, &
+         grid, p, near)
       allocate (samples(sum(p%count(near))))
       if (resolve) then
          allocate (fields(lanes, n_fields, size(near)))
@@ -111,12 +111,12 @@ contains
    end subroutine read_fields
 
    !> The traced chunks whose bins are near a front.
-   pure function chunks_near(front, reach, grid, p) result(near)
+   pure subroutine find_chunks(front, reach, grid, p, near)
       type(front_t), intent(in) :: front
       real(wp), intent(in) :: reach            !! of the bins' middles [length]
       type(grid_t), intent(in) :: grid
       type(particles_t), intent(in) :: p
-      integer, allocatable :: near(:)
+      integer, allocatable, intent(out) :: near(:)
       integer :: chosen(count(p%attached(:p%n_chunks) > 0)), c, n
       type(front_place_t) :: place
       real(wp) :: centre(3)
@@ -135,7 +135,7 @@ contains
          end do
       end if
       near = chosen(:n)
-   end function chunks_near
+   end subroutine find_chunks
 
    !> Append the particles of one chunk, for which there is room.
    subroutine sample_chunk(front, number, reach, grid, p, c, bodies, kernels, sided, loads, time, &
