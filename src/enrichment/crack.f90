@@ -35,7 +35,8 @@ module xmpm_crack
 
    real(wp), parameter :: drift = 0.02_wp  !! relative motion after which level sets are renewed
                                            !! [cells]
-   real(wp), parameter :: close = 0.02_wp  !! particles so near to the surface keep their side [cells]
+   real(wp), parameter :: close = 0.02_wp  !! particles so near to the surface keep their side
+                                           !! [cells]
    real(wp), parameter :: tie = 1e-9_wp    !! particles so little above lie in the surface, which is
                                            !! below [cells]
 
