@@ -1,13 +1,13 @@
 !> Strict reading of numbers: a whole text in full double precision, or refusal.
 module xmpm_numbers
    use, intrinsic :: ieee_arithmetic, only: ieee_get_halting_mode, ieee_set_halting_mode, &
-      ieee_set_flag
+      ieee_set_flag, ieee_is_finite
    use, intrinsic :: ieee_exceptions, only: ieee_usual
    use xmpm_kinds, only: wp
    implicit none
    private
 
-   public :: parse_real, parse_integer, number_length, is_finite
+   public :: parse_real, parse_integer, number_length
    public :: number_good, number_garbage, number_range
 
    integer, parameter :: number_good = 0      !! the text is a number
@@ -80,14 +80,6 @@ contains
       end if
    end function number_length
 
-   !> Whether a value is neither NaN nor infinite.
-   elemental function is_finite(value) result(finite)
-      real(wp), intent(in) :: value   !! any
-      logical :: finite
-
-      finite = abs(value) <= huge(value)
-   end function is_finite
-
    pure function digits_at(text, first) result(n)
       character(len=*), intent(in) :: text
       integer, intent(in) :: first
@@ -118,7 +110,7 @@ contains
       call ieee_set_halting_mode(ieee_usual, halting)
       status = number_good
       if (io /= 0) value = huge(value)
-      if (io /= 0 .or. .not. is_finite(value) .or. vanished(buffer, value)) then
+      if (io /= 0 .or. .not. ieee_is_finite(value) .or. vanished(buffer, value)) then
          status = number_range
          value = 0.0_wp
       end if

@@ -1,10 +1,10 @@
 !> Crack surfaces from files: STL, or the triangles of the HDF5 format that doc/crack_file.md
 !> describes.
 module xmpm_crack_file
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use xmpm_kinds, only: wp, i8
    use xmpm_error, only: error_t, raise, add_context, code_files
    use xmpm_text, only: to_text, lower
-   use xmpm_numbers, only: is_finite
    use xmpm_hdf5_file, only: hdf5_file_t, open_file, close_file
    use xmpm_hdf5_read, only: extent_of, read_dataset, read_attribute
    use xmpm_stl_file, only: read_stl
@@ -112,7 +112,7 @@ contains
       integer(i8) :: last
 
       do v = 1, size(x, 2)
-         if (all(is_finite(x(:, v)))) cycle
+         if (all(ieee_is_finite(x(:, v)))) cycle
          call raise(error, code_files, 'vertices['//to_text(v - 1)//'] is not finite')
          return
       end do

@@ -1,10 +1,11 @@
 !> Triangles from STL files, ASCII or binary, with equal corners made one vertex.
 module xmpm_stl_file
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int8, int32, real32, iostat_end
    use xmpm_kinds, only: wp, i8
    use xmpm_error, only: error_t, raise, code_files
    use xmpm_text, only: to_text, lower
-   use xmpm_numbers, only: parse_real, number_good, is_finite
+   use xmpm_numbers, only: parse_real, number_good
    use xmpm_hash_map, only: hash_map_t, clear_map, set_value, value_of
    implicit none
    private
@@ -48,7 +49,7 @@ contains
          return
       end if
       do i = 1, size(corner, 2)
-         if (all(is_finite(corner(:, i)))) cycle
+         if (all(ieee_is_finite(corner(:, i)))) cycle
          call raise(error, code_files, path//': facet '//to_text((i + 2)/3)// &
             ' has a corner that is not finite')
          return

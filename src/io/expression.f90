@@ -1,12 +1,12 @@
 !> Arithmetic in the deck: numbers, names, + - * / ** ^, parentheses, functions (radians).
 module xmpm_expression
    use, intrinsic :: ieee_arithmetic, only: ieee_get_halting_mode, ieee_set_halting_mode, &
-      ieee_set_flag
+      ieee_set_flag, ieee_is_finite
    use, intrinsic :: ieee_exceptions, only: ieee_usual
    use xmpm_kinds, only: wp, pi
    use xmpm_error, only: error_t, raise, code_usage
    use xmpm_text, only: string_t, lower
-   use xmpm_numbers, only: parse_real, number_length, is_finite, number_good
+   use xmpm_numbers, only: parse_real, number_length, number_good
    use xmpm_text_lists, only: append, slice, shown
    use xmpm_deck_hints, only: did_you_mean, nearest_name, edit_distance
    implicit none
@@ -292,7 +292,7 @@ contains
       else
          value = value_of_one(name, value)
       end if
-      if (.not. is_finite(value)) call blame(reader, name//' has no value there')
+      if (.not. ieee_is_finite(value)) call blame(reader, name//' has no value there')
    end subroutine read_function
 
    function value_of_one(name, x) result(y)
@@ -423,7 +423,7 @@ contains
       type(reader_t), intent(inout) :: reader
       real(wp), intent(in) :: value
 
-      if (.not. is_finite(value)) call blame(reader, 'the result is not a finite number')
+      if (.not. ieee_is_finite(value)) call blame(reader, 'the result is not a finite number')
    end subroutine check_finite
 
    !> Keep the first fault.

@@ -1,9 +1,9 @@
 !> Mutated decks through the string parser: never a crash, a hang, or a number that is not one.
 program test_deck_fuzz
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use xmpm_kinds, only: wp, i8
    use xmpm_error, only: error_t
    use xmpm_text, only: to_text
-   use xmpm_numbers, only: is_finite
    use xmpm_deck, only: deck_t, block_t, parse_deck, deck_echo, find_block, reals_of
    use testing, only: suite_t, check, check_close, check_error, check_no_error, finish
    implicit none
@@ -296,7 +296,7 @@ contains
       do i = 1, size(deck%blocks)
          do j = 1, size(deck%blocks(i)%entries)
             if (.not. allocated(deck%blocks(i)%entries(j)%numbers)) cycle
-            finite = finite .and. all(is_finite(deck%blocks(i)%entries(j)%numbers))
+            finite = finite .and. all(ieee_is_finite(deck%blocks(i)%entries(j)%numbers))
          end do
       end do
    end function all_finite

@@ -1,8 +1,9 @@
 !> Tests of the strict reading of numbers.
 program test_numbers
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use xmpm_kinds, only: wp, i8
    use xmpm_text, only: to_text
-   use xmpm_numbers, only: parse_real, parse_integer, number_length, is_finite, number_good, &
+   use xmpm_numbers, only: parse_real, parse_integer, number_length, number_good, &
       number_garbage, number_range
    use testing, only: suite_t, check, finish
    implicit none
@@ -114,7 +115,7 @@ contains
       end do
       call check(suite, 'numbers arrive in full double precision', same)
       call check(suite, 'to_text keeps a fraction of one digit', to_text(0.5_wp) == '0.5')
-      call check(suite, 'to_text writes the largest number', is_finite(huge(x)) .and. &
+      call check(suite, 'to_text writes the largest number', ieee_is_finite(huge(x)) .and. &
          to_text(huge(x)) == '1.7976931348623157e308')
    end subroutine gives_back_every_bit
 
