@@ -6,7 +6,8 @@ module xmpm_contact_pairs
    use xmpm_grid, only: grid_t, node_position
    use xmpm_sharing, only: sharing_t
    use xmpm_surface_index, only: nearest_t, nearest_on_surface
-   use xmpm_crack, only: crack_t
+   use xmpm_level_sets, only: level_sets_at
+   use xmpm_crack, only: crack_t, rule_graded
    use xmpm_split, only: split_t, row_of_sides, sides_of_group
    implicit none
    private
@@ -164,6 +165,7 @@ contains
    end subroutine add_node
 
    !> Add the pairs of a node for the faces of one of its cracks, with the normal of the surface.
+   !> A node ahead of the ramp, which particles in it split, has no faces.
    subroutine add_faces(contact, cracks, split, grid, s, i)
       type(contact_t), intent(inout) :: contact
       type(crack_t), intent(in) :: cracks(:)
@@ -171,13 +173,16 @@ contains
       type(grid_t), intent(in) :: grid
       integer, intent(in) :: s, i   !! split node, number of the crack at the node
       type(nearest_t) :: nearest
+      real(wp) :: x(3), reach
       integer :: sides, k
 
       k = split%crack(i, s)
+      x = node_position(grid, split%row(s))
+      reach = 8*grid%lattice%size
       associate (crack => cracks(k))
-         call nearest_on_surface(crack%index, crack%surface, node_position(grid, split%row(s)), &
-            8*grid%lattice%size, nearest, 0)
+         call nearest_on_surface(crack%index, crack%surface, x, reach, nearest, 0)
          if (nearest%triangle == 0) return
+         if (is_ahead(crack, x, nearest, reach, grid%lattice%size)) return
          do sides = 0, 2**split%n_cracks(s) - 1
             if (btest(sides, i - 1)) cycle
             contact%n = contact%n + 1
@@ -190,6 +195,23 @@ contains
          end do
       end associate
    end subroutine add_faces
+
+   !> Whether a point is ahead of the ramp of a crack that does not grow (one that grows takes the
+   !> nodes in between two listings).
+   pure function is_ahead(crack, x, nearest, reach, h) result(ahead)
+      type(crack_t), intent(in) :: crack
+      real(wp), intent(in) :: x(3)               !! [length]
+      type(nearest_t), intent(in) :: nearest     !! of the surface to x
+      real(wp), intent(in) :: reach              !! [length]
+      real(wp), intent(in) :: h                  !! cell size [length]
+      logical :: ahead
+      real(wp) :: psi, phi, e1(3)
+
+      ahead = .false.
+      if (crack%rule /= rule_graded .or. allocated(crack%offset)) return
+      call level_sets_at(crack%surface, crack%front, reach, x, nearest, psi, phi, e1)
+      ahead = phi >= crack%ramp_end*h
+   end function is_ahead
 
    !> The halo of the pairs: nodes in the order of the shared rows, pairs as they were added.
    subroutine share_pairs(contact, split, sharing, rank)

@@ -27,6 +27,8 @@ module xmpm_front_values
    real(wp), parameter :: round = 1.05_wp          !! largest radius over that of the front's bend
    real(wp), parameter :: overlap = 1e-9_wp        !! of the faces, over the distance behind the
                                                    !! front, from which they are closed
+   real(wp), parameter :: shear = 0.02_wp          !! opening over the whole jump up to which faces
+                                                   !! may touch
 
    !> What is known at the points of one crack's fronts at one time.
    type :: front_values_t
@@ -91,6 +93,7 @@ contains
       type(front_values_t), intent(inout) :: values
       integer, intent(in) :: i
       real(wp) :: k(3, size(shape%radius), 0:size(rates%j, 2)), a(3), opening(3)
+      logical :: touch   ! faces that press each other give the interaction integral a K_I
       integer :: fits, n, r, m
 
       call count_fitting(shape, sums%volume(:, i)/max(rates%length(i), tiny(1.0_wp)), fits)
@@ -104,6 +107,7 @@ contains
          opening = opening_behind(crack, values%points, i, behind)
          if (opening(1) < -overlap*behind) values%flags(i) = values%flags(i) + flag_closed
          opening(1) = max(opening(1), 0.0_wp)
+         touch = opening(1) <= shear*norm2(opening)
          do r = 1, n
             do m = 1, size(j, 2)
                k(:, r, m) = split_rate(e, a, j(r, m), opening)
@@ -114,10 +118,10 @@ contains
          values%j_bar(:, i) = [minval(j(:n, :)), maxval(j(:n, :))]
          values%t(i) = t_stress(e, sums%interaction(4, n, i)/length, sums%along(:, i))
       end associate
-      if (.not. opening(1) > 0) k(1, :, 0) = 0
+      if (touch) k(1, :, 0) = k(1, :, 1)
       if (values%speed(i) > 0) k(:, :, 0) = k(:, :, 1)
       values%k(:, i) = k(:, n, 1)
-      if (opening(1) > 0) values%k(:, i) = scaled_to_rate(values%material(i), a, rates%j(n, 1, i), &
+      if (.not. touch) values%k(:, i) = scaled_to_rate(values%material(i), a, rates%j(n, 1, i), &
          [0.5_wp*(k(:2, n, 1) + k(:2, n, 0)), k(3, n, 1)], k(:, n, 1))
       do r = 1, 3
          values%k_bar(:, r, i) = [min(minval(k(r, :n, :)), values%k(r, i)), &

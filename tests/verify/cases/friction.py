@@ -8,7 +8,7 @@ is removed. Friction depends on the way, so nothing may overshoot: damping is ab
 XPIC(2) takes what no node sees. The opening must be 0, the faces overlap by 1e-3 h at most, and K
 of a crack in tension be the same to 1e-6 with contact.
 
-K_II from J is too large with friction, by 22 % at mu = 0.3 and a = 10 h (0.609 where 0.5 is right),
+K_II from J is too large with friction, by 20 % at mu = 0.3 and a = 10 h (0.60 where 0.5 is right),
 less with smaller cells: a known miss. Traction on the faces works in J on the slip there; J reads
 the slip gradient at particles 0.25 to 1.75 cells off the faces, which near the front is smaller.
 """
