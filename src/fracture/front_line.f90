@@ -10,6 +10,9 @@ module xmpm_front_line
    public :: line_t, front_limits_t
    public :: limits_for, line_of_chain, merge_short, split_long, smooth_line, parent_of, insert_node
 
+   real(wp), parameter :: tie = 1e-6_wp   !! lengths that differ by less, relatively, are equal: new
+                                          !! nodes stand at distances that are bounds themselves
+
    !> Lengths that a front keeps to.
    type :: front_limits_t
       real(wp) :: cell = 1.0_wp       !! grid size h [length]
@@ -124,7 +127,7 @@ contains
       real(wp) :: t(3)
 
       t = line%x(:, j) - line%x(:, i)
-      sound = norm2(t) >= limits%shortest .and. dot_product(t, &
+      sound = norm2(t) >= (1 - tie)*limits%shortest .and. dot_product(t, &
          front%e3(:, parent_of(line, i)) + front%e3(:, parent_of(line, j))) > 0.0_wp
    end function is_sound
 
@@ -177,8 +180,8 @@ contains
       i = 1
       do while (i <= segments(line))
          j = modulo(i, line%n) + 1
-         if (norm2(line%x(:, j) - line%x(:, i)) <= limits%longest .or. (held(line, i) .and. &
-             held(line, j))) then
+         if (norm2(line%x(:, j) - line%x(:, i)) <= (1 + tie)*limits%longest .or. &
+             (held(line, i) .and. held(line, j))) then
             i = i + 1
             cycle
          end if

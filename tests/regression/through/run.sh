@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The deck of the rod with large cells: the crack turns to mode I, reaches all sides and cuts the rod
-# through, on any number of ranks.
+# The decks of the rod and the tube with large cells: the crack turns to mode I, reaches all sides and
+# cuts the body through; that of the rod alike on any number of ranks.
 # ranks: 2
 # shellcheck source=../case.sh
 source "$(dirname "$0")/../case.sh"
@@ -37,5 +37,14 @@ K_II over K_I before growth | $(at 0.009) | 0.6 | 0.1 | the crack is inclined by
 K_II over K_I at 20 us | $(at 0.02) | 0 | 0.1 | mode II below a hundredth of G
 halves that move apart, over their mean speed | (last["velocity"][$upper, 2].mean() - last["velocity"][~$upper, 2].mean())/$speed | 2 | 0.3 | whole bodies that swing at their ends
 momentum along the rod over that of a half | np.abs(energy["momentum_z"]).max()/(0.5*7.9e-3*50*50*100*$speed) | 0 | 1e-10 | equal loads at both ends
+TABLE
+
+coarse tube-crack 3.3333333333 0.072
+run_deck "$ranks" tube tube-crack.inp
+expect_text tube/tube-crack.log 'no front is left: it has cut the body through'
+compare check tube/tube-crack <<TABLE
+K_II over K_I before growth | $(at 0.0083) | 0.67 | 0.15 | 0.68 and 0.67 at 2.5 and 2 mm
+K_II over K_I at 34 us | $(at 0.034) | 0 | 0.1 | mode II below a hundredth of G
+energy balance | np.abs(energy["relative_error"]).max() | 0 | 0.05 | aim of the balance
 TABLE
 finish
