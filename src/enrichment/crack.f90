@@ -453,8 +453,11 @@ contains
       if (total > 0) v = v/total
    end subroutine weighted_velocity
 
-   !> Bring the vertices of all ranks together, let those without material follow if it is time to,
-   !> and renew the geometry. Collective.
+   !> Bring the vertices of all ranks together and, if it is time to, let those without material
+   !> follow and renew geometry and H. Collective.
+   !>
+   !> A vertex may leave the blocks of its rank at any step. If that renewed the geometry, fields
+   !> would depend on the number of ranks; only the sharp rules, which look for nodes then, need it.
    subroutine gather_crack(crack, comm, grid, follow)
       type(crack_t), intent(inout) :: crack
       type(comm_t), intent(in) :: comm
@@ -481,10 +484,12 @@ contains
       if (follow .and. any(crack%material) .and. .not. all(crack%material)) then
          call fill_void(crack%surface, crack%material)
       end if
+      crack%surface%x = crack%surface%start + 0.5_wp*(crack%surface%up + crack%surface%um)
+      call take_vertices(crack, comm%rank, grid)
+      if (.not. follow .and. crack%rule == rule_graded) return
       call refresh_geometry(crack%surface)
       call refresh_index(crack%surface, crack%index)
       call refresh_front(crack%surface, crack%front)
-      call take_vertices(crack, comm%rank, grid)
       if (allocated(crack%offset)) call weigh_vertices(crack, grid%lattice%size)
    end subroutine gather_crack
 
