@@ -6,7 +6,7 @@ module reach_bodies
    implicit none
    private
 
-   public :: wedge_t, ring_t
+   public :: wedge_t
 
    !> A plate whose faces move apart from x = 10 on.
    type, extends(material_test_t) :: wedge_t
@@ -16,14 +16,6 @@ module reach_bodies
    contains
       procedure :: inside => inside_wedge
    end type wedge_t
-
-   !> A tube along z.
-   type, extends(material_test_t) :: ring_t
-      real(wp) :: inner = 8.0_wp    !! radii
-      real(wp) :: outer = 12.0_wp
-   contains
-      procedure :: inside => inside_ring
-   end type ring_t
 
 contains
 
@@ -35,28 +27,19 @@ contains
       is = abs(x(2)) < material%half + material%slope*max(0.0_wp, x(1) - 10) &
          .and. x(1) < material%end
    end function inside_wedge
-
-   pure function inside_ring(material, x) result(is)
-      class(ring_t), intent(in) :: material
-      real(wp), intent(in) :: x(3)
-      logical :: is
-
-      is = norm2(x(1:2)) > material%inner .and. norm2(x(1:2)) < material%outer
-   end function inside_ring
 end module reach_bodies
 
 program test_front_reach
    use xmpm_kinds, only: wp, pi
    use xmpm_error, only: error_t
-   use xmpm_surface, only: surface_t, build_surface, surface_area
-   use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_rectangle
+   use xmpm_surface, only: surface_t, surface_area
    use xmpm_surface_index, only: surface_index_t, nearest_t, build_index, nearest_on_surface
    use xmpm_front, only: front_t
    use xmpm_material_test, only: material_test_t
    use xmpm_front_line, only: front_limits_t, limits_for
-   use xmpm_front_search, only: find_front
-   use xmpm_grow_surface, only: grown_t, grow_surface
-   use reach_bodies, only: wedge_t, ring_t
+   use xmpm_grow_surface, only: grown_t
+   use growing_surface, only: tube_t, make_cut, grow_cut
+   use reach_bodies, only: wedge_t
    use testing, only: suite_t, check, check_error, check_no_error, finish
    implicit none
    type(suite_t) :: suite
@@ -81,36 +64,27 @@ contains
    subroutine start(size, centre, along, across, body)
       real(wp), intent(in) :: size(2), centre(3), along(3), across(3)
       class(material_test_t), intent(in) :: body
-      type(crack_plane_t) :: plane
-      real(wp), allocatable :: x(:, :)
-      integer, allocatable :: tri(:, :)
 
-      call set_plane(centre, along, across, plane, error)
-      call make_rectangle(plane, size, 1.0_wp, x, tri, error)
-      call build_surface(x, tri, surface, error)
-      call find_front(surface, surface%edge(:, surface%boundary), 1.0_wp, body, front)
+      call make_cut(size, centre, along, across, body, surface, front, error)
    end subroutine start
 
    subroutine grow_by(advance, body)
       real(wp), intent(in) :: advance(:, :)
       class(material_test_t), intent(in) :: body
-      logical :: waits(size(advance, 2))
 
-      waits = .false.
-      call grow_surface(surface, front, advance, waits, limits, body, grown, error)
-      if (allocated(error)) return
-      surface = grown%surface
-      front = grown%front
+      call grow_cut(advance, limits, body, surface, front, grown, error)
    end subroutine grow_by
 
    !> Two fronts that run through the wall of a tube with the same speed at all points lean more and
    !> more against the inner wall. Their ends follow it, and no node is put far ahead.
    subroutine ends_follow_a_wall()
-      type(ring_t) :: tube
+      type(tube_t) :: tube
       real(wp), allocatable :: before(:, :)
       real(wp) :: jump
       integer :: i, k, outside
 
+      tube%inner = 8
+      tube%outer = 12
       call start([5.0_wp, 6.0_wp], [0.0_wp, 10.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], &
          [0.0_wp, 1.0_wp, 0.0_wp], tube)
       jump = 0
@@ -245,11 +219,13 @@ contains
    !> Fronts that run round a tube and rise to opposite sides come to lie beside each other: they
    !> are joined by a ramp of several rows.
    subroutine fronts_meet_beside_each_other()
-      type(ring_t) :: tube
+      type(tube_t) :: tube
       real(wp), allocatable :: advance(:, :)
       real(wp) :: turn
       integer :: i, k, joined
 
+      tube%inner = 8
+      tube%outer = 12
       call start([5.0_wp, 6.0_wp], [0.0_wp, 10.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], &
          [0.0_wp, 1.0_wp, 0.0_wp], tube)
       limits%meeting = 6

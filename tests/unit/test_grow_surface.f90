@@ -1,46 +1,17 @@
 !> Growth of surfaces without any mechanics: shape, area, fronts, faults.
-module growth_bodies
-   use xmpm_kinds, only: wp
-   use xmpm_material_test, only: material_test_t
-   implicit none
-   private
-
-   public :: tube_t
-
-   !> A tube along z, by default without end and without a hole.
-   type, extends(material_test_t) :: tube_t
-      real(wp) :: inner = -1.0_wp            !! radius of the hole, negative for none
-      real(wp) :: outer = 1.0e9_wp           !! radius
-      real(wp) :: y(2) = [-1e9_wp, 1e9_wp]   !! faces across y
-   contains
-      procedure :: inside => inside_tube
-   end type tube_t
-
-contains
-
-   pure function inside_tube(material, x) result(is)
-      class(tube_t), intent(in) :: material
-      real(wp), intent(in) :: x(3)
-      logical :: is
-
-      is = norm2(x(1:2)) < material%outer .and. norm2(x(1:2)) > material%inner &
-         .and. x(2) > material%y(1) .and. x(2) < material%y(2)
-   end function inside_tube
-end module growth_bodies
-
 program test_grow_surface
    use xmpm_kinds, only: wp, pi
    use xmpm_error, only: error_t
    use xmpm_vectors, only: cross, unit_vector
    use xmpm_surface, only: surface_t, build_surface, refresh_geometry, surface_area
-   use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_rectangle, make_disc
+   use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_disc
    use xmpm_surface_index, only: surface_index_t, nearest_t, build_index, nearest_on_surface
    use xmpm_front, only: front_t
    use xmpm_front_line, only: front_limits_t, limits_for
    use xmpm_mesh_check, only: triangles_overlap
    use xmpm_front_search, only: find_front
    use xmpm_grow_surface, only: grown_t, grow_surface
-   use growth_bodies, only: tube_t
+   use growing_surface, only: tube_t, make_cut, grow_cut
    use testing, only: suite_t, check, check_close, check_error, check_no_error, finish
    implicit none
    type(suite_t) :: suite
@@ -84,14 +55,8 @@ contains
 
    subroutine start_rectangle(size, centre, along, across)
       real(wp), intent(in) :: size(2), centre(3), along(3), across(3)
-      type(crack_plane_t) :: plane
-      real(wp), allocatable :: x(:, :)
-      integer, allocatable :: tri(:, :)
 
-      call set_plane(centre, along, across, plane, error)
-      call make_rectangle(plane, size, h, x, tri, error)
-      call build_surface(x, tri, surface, error)
-      call find_front(surface, rim(), h, body, front)
+      call make_cut(size, centre, along, across, body, surface, front, error)
    end subroutine start_rectangle
 
    function rim() result(pair)
@@ -100,16 +65,10 @@ contains
       pair = surface%edge(:, surface%boundary)
    end function rim
 
-   !> Grow by an advance; the surface and its front are then the new ones.
    subroutine grow_by(advance)
       real(wp), intent(in) :: advance(:, :)
-      logical :: waits(size(advance, 2))
 
-      waits = .false.
-      call grow_surface(surface, front, advance, waits, limits, body, grown, error)
-      if (allocated(error)) return
-      surface = grown%surface
-      front = grown%front
+      call grow_cut(advance, limits, body, surface, front, grown, error)
    end subroutine grow_by
 
    !> Every node ahead by a length, kinked by an angle.
