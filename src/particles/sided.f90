@@ -7,7 +7,7 @@
 module xmpm_sided
    use xmpm_kinds, only: wp
    use xmpm_lattice, only: bins_per_block
-   use xmpm_storage, only: particles_t, lanes, n_near, near_crack, near_jump, near_slope
+   use xmpm_storage, only: particles_t, lanes, n_near, near_crack, near_jump
    implicit none
    private
 
@@ -48,8 +48,8 @@ contains
       integer, intent(in) :: set                   !! 0 to 2**size(cracks) - 1
       real(wp), intent(out) :: weight(lanes)       !! g
       real(wp), intent(out) :: slope(lanes, 3)     !! gradient of g [1/length]
-      real(wp) :: h, sign, g, grad(3)
-      integer :: i, k, at
+      real(wp) :: jump(lanes, 4), sign, g
+      integer :: i, k
 
       weight = 1
       slope = 0
@@ -60,32 +60,38 @@ contains
             slope = 0
             return
          end if
+         jump = 0
+         if (p%attached(chunk) > 0) then
+            call find_jumps(p%slots, p%near(:, :, p%attached(chunk)), p%count(chunk), cracks(k), jump)
+         end if
          sign = merge(0.5_wp, -0.5_wp, btest(set, k - 1))
-         do i = 1, p%count(chunk)
-            at = slot_of(p, i, chunk, cracks(k))
-            h = 0
-            grad = 0
-            if (at >= 0) then
-               h = p%near(i, at + near_jump, p%attached(chunk))
-               grad = p%near(i, at + near_slope:at + near_slope + 2, p%attached(chunk))
-            end if
-            g = 0.5_wp + sign*h
-            slope(i, :) = slope(i, :)*g + weight(i)*sign*grad
+         do i = 1, lanes
+            g = 0.5_wp + sign*jump(i, 1)
+            slope(i, :) = slope(i, :)*g + weight(i)*sign*jump(i, 2:4)
             weight(i) = weight(i)*g
          end do
       end do
+      weight(p%count(chunk) + 1:) = 0
+      slope(p%count(chunk) + 1:, :) = 0
    end subroutine side_weights
 
-   !> Where the slot of a crack begins, less one; -1 where the particle has none.
-   pure function slot_of(p, lane, chunk, crack) result(at)
-      type(particles_t), intent(in) :: p
-      integer, intent(in) :: lane, chunk, crack
-      integer :: at, k
+   !> H of a crack and its gradient in the lanes that have a slot of it; others stay as they are.
+   pure subroutine find_jumps(slots, near, n, crack, jump)
+      integer, intent(in) :: slots
+      real(wp), intent(in) :: near(lanes, *)       !! near record of the chunk
+      integer, intent(in) :: n                     !! lanes in use
+      integer, intent(in) :: crack
+      real(wp), intent(inout) :: jump(lanes, 4)    !! H, gradient of H [1/length]
+      real(wp) :: mine(lanes)
+      integer :: slot, at, i
 
-      at = -1
-      if (p%attached(chunk) == 0) return
-      do k = 0, p%slots - 1
-         if (nint(p%near(lane, n_near*k + near_crack, p%attached(chunk))) == crack) at = n_near*k
+      do slot = 0, slots - 1
+         at = n_near*slot
+         mine = merge(1.0_wp, 0.0_wp, abs(near(:lanes, at + near_crack) - real(crack, wp)) < 0.5_wp)
+         do i = 0, 3
+            jump(:, 1 + i) = jump(:, 1 + i) + mine*near(:lanes, at + near_jump + i)
+         end do
+         if (all(mine(:n) > 0)) exit
       end do
-   end function slot_of
+   end subroutine find_jumps
 end module xmpm_sided

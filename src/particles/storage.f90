@@ -26,11 +26,11 @@ module xmpm_storage
    integer, parameter :: n_hot = 14     !! components that every step touches
 
    integer, parameter :: near_crack = 1   !! crack that the slot belongs to, 0 for none
-   integer, parameter :: near_side = 2    !! +1 or -1, kept behind the front
-   integer, parameter :: near_psi = 3     !! signed distance to the crack [length]
-   integer, parameter :: near_phi = 4     !! distance ahead of the front [length]
-   integer, parameter :: near_jump = 5    !! H, from -1 to 1
-   integer, parameter :: near_slope = 6   !! 6:8 gradient of H [1/length]
+   integer, parameter :: near_jump = 2    !! H, from -1 to 1; read in every step, hence beside it
+   integer, parameter :: near_slope = 3   !! 3:5 gradient of H [1/length]
+   integer, parameter :: near_side = 6    !! +1 or -1, kept behind the front
+   integer, parameter :: near_psi = 7     !! signed distance to the crack [length]
+   integer, parameter :: near_phi = 8     !! distance ahead of the front [length]
    integer, parameter :: near_ahead = 9   !! distance ahead of the front as it is in the mesh
                                           !! [length]
    integer, parameter :: near_place = 10  !! front edge plus part of it where the front is nearest,
