@@ -6,8 +6,8 @@
 !>    G int l e1 . n ds = sum_p { V [s_ij u_i,k - W d_jk] q_k,j + f_i u_i,k q_k }
 !>
 !> holds for any front, straight or curved, since q is any field that is l e1 on the front and
-!> tangent to the faces. f = V s_ij,j is what the nodes say, so that inertia, body forces, damping
-!> and tractions on the faces need no terms of their own. For a front that moves at C > 0 the
+!> tangent to the faces. f = V s_ij,j is what the nodes say, so that inertia, body forces and
+!> damping need no terms of their own (tractions between the faces: xmpm_face_work). For a front that moves at C > 0 the
 !> kinetic energy adds - V E q_k,k - V rho v_i v_i,k q_k, v relative to the material at the front
 !> (the two cancel in the sum at C = 0, where their quadrature would only add noise).
 module xmpm_domain_integral
@@ -21,7 +21,7 @@ module xmpm_domain_integral
    private
 
    public :: domain_sums_t, domain_shape_t, sum_domains, plateau_area, clear_sums
-   public :: points_near, full
+   public :: points_near, sees, profile, full
 
    !> The field q.
    type :: domain_shape_t
@@ -38,6 +38,8 @@ module xmpm_domain_integral
       real(wp), allocatable :: j(:, :)               !! (nr,n) J times window length [energy/length]
       real(wp), allocatable :: interaction(:, :, :)  !! (4,nr,n) with unit modes I, II, III and
                                                      !! with a unit line force
+      real(wp), allocatable :: faces(:, :)           !! (nr,n) part of J from tractions between the
+                                                     !! faces, l without w
       real(wp), allocatable :: volume(:, :)          !! (nr,n) integral of w l [length^3]
       real(wp), allocatable :: material(:, :)        !! (4,n) volume, and it times lambda, mu, rho
       real(wp), allocatable :: along(:, :)           !! (5,n) fit of the strain along the front
@@ -63,7 +65,7 @@ contains
       integer, intent(in) :: n_radii, n
 
       allocate (sums%j(n_radii, n), sums%interaction(4, n_radii, n), sums%volume(n_radii, n), &
-                sums%material(4, n), sums%along(5, n), source=0.0_wp)
+                sums%faces(n_radii, n), sums%material(4, n), sums%along(5, n), source=0.0_wp)
    end subroutine clear_sums
 
    !> Add all samples to the points near them.

@@ -1,7 +1,7 @@
 !> Fracture parameters of all fronts that the deck asks for.
 module xmpm_fracture
    use xmpm_kinds, only: wp
-   use xmpm_communicator, only: comm_t, sum_all
+   use xmpm_communicator, only: comm_t, sum_all, max_all
    use xmpm_halo, only: halo_t
    use xmpm_lattice, only: bin_corner
    use xmpm_grid, only: grid_t
@@ -22,6 +22,9 @@ module xmpm_fracture
    use xmpm_front_points, only: list_points, front_points_t
    use xmpm_front_ends, only: find_ends
    use xmpm_domain_integral, only: domain_shape_t, domain_sums_t, clear_sums, sum_domains
+   use xmpm_face_points, only: face_forces_t, face_points_t, list_face_points, find_shares, &
+      find_tractions
+   use xmpm_face_work, only: add_face_work
    use xmpm_rates, only: rates_t, find_rates, method_domain
    use xmpm_front_values, only: front_values_t, clear_values, find_values, flag_other
    implicit none
@@ -43,6 +46,7 @@ module xmpm_fracture
       real(wp) :: behind = 0                        !! where openings are taken [length]
       type(front_values_t), allocatable :: values(:)   !! of each crack in the list, last time
       logical :: measured = .false.                 !! there are values
+      type(face_forces_t) :: faces                  !! contact of the crack that is looked at
    end type fracture_t
 
 contains
@@ -90,7 +94,7 @@ contains
    end subroutine start_traces
 
    !> Find the values at the fronts of one crack of the list. The rows hold mass, momentum and
-   !> force as P2G leaves them; nothing of the run is changed. Collective.
+   !> force as P2G leaves them, with what is in `faces`; nothing of the run is changed. Collective.
    subroutine measure_front(fracture, which, cracks, comm, halo, grid, p, bodies, kernels, sided, &
          loads, time, speed)
       type(fracture_t), intent(inout) :: fracture
@@ -111,12 +115,14 @@ contains
       type(sample_t), allocatable :: samples(:)
       type(domain_sums_t) :: sums
       type(rates_t) :: rates
+      type(face_points_t) :: faces
       real(wp), allocatable :: drift(:, :)
       real(wp) :: reach
 
       associate (number => fracture%cracks(which), shape => fracture%shape)
          crack = cracks(number)
          call gather_crack(crack, comm, grid, .true.)
+         if (fracture%faces%meet) call press_faces(fracture, crack, comm, grid, p, faces)
          if (allocated(crack%offset)) call shift_front(crack%surface%rounding, crack%offset, &
             crack%front)
          call list_points(crack, values%points)
@@ -131,6 +137,7 @@ contains
          drift = drift_at(samples, values%points, speed, comm)
          call sum_domains(samples, crack%front, values%points, shape, speed, drift, sums)
          call sum_over_ranks(comm, sums)
+         call add_face_work(faces, crack%front, values%points, shape, sums)
          call find_rates(fracture%methods, comm, samples, crack%front, values%points, shape, &
             speed, drift, sums, rates)
          call find_values(crack, shape, sums, rates, fracture%behind, values)
@@ -139,6 +146,28 @@ contains
       fracture%values(which) = values
       fracture%measured = .true.
    end subroutine measure_front
+
+   !> Points of the closed faces with their tractions; none where nothing presses. Collective.
+   subroutine press_faces(fracture, crack, comm, grid, p, faces)
+      type(fracture_t), intent(in) :: fracture
+      type(crack_t), intent(in) :: crack             !! gathered, its front as the mesh has it
+      type(comm_t), intent(in) :: comm
+      type(grid_t), intent(in) :: grid
+      type(particles_t), intent(in) :: p
+      type(face_points_t), intent(out) :: faces
+      real(wp), allocatable :: share(:)
+      real(wp) :: largest
+
+      largest = 0
+      if (size(fracture%faces%force) > 0) largest = maxval(abs(fracture%faces%force))
+      call max_all(comm, largest)
+      if (.not. largest > 0) return
+      call list_face_points(crack, grid%lattice%size, maxval(fracture%shape%radius), faces)
+      allocate (share(faces%n))
+      call find_shares(faces, grid, p, share)
+      call sum_all(comm, share)
+      call find_tractions(fracture%faces, comm, grid%lattice, share, faces)
+   end subroutine press_faces
 
    !> Least and largest J of all fronts, as measured last.
    pure function release_range(fracture) result(range)

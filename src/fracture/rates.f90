@@ -57,6 +57,8 @@ contains
                call rates_of_circles(circles, i, shape%radius, rates%length(i), &
                   sums%material(:, i), methods(k) == method_paper, speed(i), drift(:, i), &
                   rates%j(:, k, i))
+               if (rates%length(i) > 0) rates%j(:, k, i) = rates%j(:, k, i) &
+                  + sums%faces(:, i)/rates%length(i)
             end if
          end do
       end do

@@ -10,7 +10,7 @@ module xmpm_meet
    implicit none
    private
 
-   public :: measure_contact, meet_bodies, meet_straining, meet_again
+   public :: measure_contact, meet_bodies, meet_straining, meet_again, note_conditions
 
 contains
 

@@ -19,6 +19,7 @@ module xmpm_stages
    use xmpm_crack, only: advance_crack
    use xmpm_fracture, only: measure_front
    use xmpm_front_flags, only: flag_conditions
+   use xmpm_face_forces, only: faces_meet, find_face_forces, part_faces
    use xmpm_meet, only: measure_contact, meet_bodies, meet_straining, meet_again
    use xmpm_model, only: model_t
    implicit none
@@ -84,13 +85,8 @@ contains
       integer :: i
 
       call start_stage(m%clock, stage_grid)
-      body_force = 0
-      do i = 1, size(m%gravity)
-         body_force = body_force &
-            + curve_value(m%gravity(i)%curve, m%time)*m%gravity(i)%acceleration
-      end do
-      rate = 0
-      if (m%time < m%options%damped_until) rate = m%options%viscous
+      body_force = body_force_of(m)
+      rate = damping_of(m)
       call advance_momentum(m%grid, dt, body_force, rate)
       do i = 1, size(m%boundaries)
          call set_velocity(m, i, dt)
@@ -117,6 +113,27 @@ contains
       end if
       call stop_stage(m%clock, stage_grid)
    end subroutine advance_nodes
+
+   !> All body forces of now.
+   pure function body_force_of(m) result(force)
+      type(model_t), intent(in) :: m
+      real(wp) :: force(3)   !! [length/time^2]
+      integer :: i
+
+      force = 0
+      do i = 1, size(m%gravity)
+         force = force + curve_value(m%gravity(i)%curve, m%time)*m%gravity(i)%acceleration
+      end do
+   end function body_force_of
+
+   !> Rate of nodal damping of now.
+   pure function damping_of(m) result(rate)
+      type(model_t), intent(in) :: m
+      real(wp) :: rate   !! [1/time]
+
+      rate = 0
+      if (m%time < m%options%damped_until) rate = m%options%viscous
+   end function damping_of
 
    !> Corrected inertia: the change of velocity gets back half of what a step's transfers smooth.
    subroutine sharpen_change(m, dt)
@@ -338,13 +355,18 @@ contains
    !> the grid for them serves the next step as well.
    subroutine measure_fronts(m)
       type(model_t), intent(inout) :: m
-      real(wp), allocatable :: speed(:)
+      real(wp), allocatable :: speed(:), force(:, :), node(:, :)
       integer :: i, k
 
       call map_to_grid(m)
       m%mapped = .true.
       call start_stage(m%clock, stage_fracture)
+      if (faces_meet(m)) then
+         call find_face_forces(m, body_force_of(m), damping_of(m), force)
+         node = m%grid%node
+      end if
       do i = 1, size(m%fracture%cracks)
+         if (allocated(node)) call part_faces(m, m%fracture%cracks(i), force)
          allocate (speed(m%cracks(m%fracture%cracks(i))%front%node_count), source=0.0_wp)
          if (allocated(m%growth)) then
             do k = 1, size(m%growth)
@@ -354,6 +376,7 @@ contains
          call measure_front(m%fracture, i, m%cracks, m%comm, m%halo, m%grid, m%particles, &
             m%bodies, m%kernels, m%sided, m%loads, m%time, speed)
          call flag_conditions(m%boundaries, m%comm, m%grid, m%fracture%values(i))
+         if (allocated(node)) m%grid%node = node
          deallocate (speed)
       end do
       call stop_stage(m%clock, stage_fracture)

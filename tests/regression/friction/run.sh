@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A closed crack slips as Coulomb says and stays shut, with no K_I; without contact its faces overlap,
-# which is told once. K of a crack in tension is the same with contact and without.
+# A closed crack slips as Coulomb says, with the K_II of it on any number of ranks, and stays shut;
+# without contact its faces overlap, which is told once. K of a crack in tension is the same with contact and without.
 # ranks: 2
 # shellcheck source=../case.sh
 source "$(dirname "$0")/../case.sh"
@@ -10,6 +10,7 @@ sed '/contact = friction/d' "$here/deck.inp" >none.inp
 sed 's/stress = .*/stress = 0 100 0 0 0 0/' "$here/deck.inp" >tension.inp
 sed 's/stress = .*/stress = 0 100 0 0 0 0/' none.inp >untouched.inp
 run_deck "$ranks" friction
+run_deck 1 one
 run_deck "$ranks" free free.inp
 run_deck "$ranks" none none.inp >none.txt 2>&1
 run_deck "$ranks" tension tension.inp
@@ -24,9 +25,12 @@ from xmpm_post import open_run
 met, free, none = (open_run(name).crack().fields["opening"] for name in ("friction", "free", "none"))
 ratio = np.abs(met[:, 0]).max() / np.abs(free[:, 0]).max()
 tension, untouched = (open_run(name).front["K_I"] for name in ("tension", "untouched"))
-shear = open_run("friction").front
+shear, one, plain = (open_run(name).front for name in ("friction", "one", "free"))
+k_two = np.abs(shear["K_II"]).mean() / np.abs(plain["K_II"]).mean()
 rows = (
     ("slip over the frictionless one", abs(ratio / 0.5 - 1), 0.03),  # (tau - mu p) / tau = 0.5
+    ("K_II over the frictionless one", abs(k_two / 0.5 - 1), 0.05),  # likewise
+    ("K_II on 2 ranks, off that on 1", np.abs(shear["K_II"] / one["K_II"] - 1).max(), 1e-9),  # rounding
     ("overlap in cells", -met[:, 1].min() / 2, 1e-3),
     ("opening in cells", met[:, 1].max() / 2, 1e-3),
     ("K_I of closed faces over K_II", np.abs(shear["K_I"] / shear["K_II"]).max(), 0.01),

@@ -7,10 +7,6 @@ the width drops out. Without friction K_II is tau sqrt(pi a), compared after the
 is removed. Friction depends on the way, so nothing may overshoot: damping is above critical, and
 XPIC(2) takes what no node sees. The opening must be 0, the faces overlap by 1e-3 h at most, and K
 of a crack in tension be the same to 1e-6 with contact.
-
-K_II from J is too large with friction, by 20 % at mu = 0.3 and a = 10 h (0.60 where 0.5 is right),
-less with smaller cells: a known miss. Traction on the faces works in J on the slip there; J reads
-the slip gradient at particles 0.25 to 1.75 cells off the faces, which near the front is smaller.
 """
 
 from collections.abc import Iterator
@@ -93,6 +89,13 @@ def slip_of(run: Run) -> float:
     return amplitude * STEEL.young / (4 * (1 - STEEL.poisson**2))
 
 
+def slip_behind(run: Run, h: float) -> float:
+    """Slip two cells behind the fronts, where K is split by openings [mm]."""
+    crack = Results(run.folder, run.name).crack()
+    x, slip = np.abs(crack.points[:, 0]), crack.fields["opening"][:, 0]
+    return float(slip[np.abs(x - HALF + 2 * h) < 0.25 * h].mean())
+
+
 def across(run: Run) -> np.ndarray:
     """Opening of the faces along the normal [mm]."""
     return Results(run.folder, run.name).crack().fields["opening"][:, 1]
@@ -117,6 +120,13 @@ def sliding(h: float, wanted: bool) -> Iterator[Row]:
             *case,
             "K_II / frictionless, from J",
             k_of(run, "K_II") / k,
+            part,
+            0.05 if wanted else None,
+        )
+        yield Row.of(
+            *case,
+            "K_II / frictionless, from the slip 2 h behind",
+            slip_behind(run, h) / slip_behind(free, h),
             part,
             0.05 if wanted else None,
         )
