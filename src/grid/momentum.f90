@@ -121,8 +121,11 @@ contains
       end do
    end subroutine blend_change
 
-   !> Fields 5:7, say w, become (3 w - S+ S w)/2; grid%second has the momentum of S+ S w, and is
+   !> Fields 5:7, say w, become w + 3/4 (w - S+ S w); grid%second has the momentum of S+ S w, and is
    !> cleared. With `carry` the velocity in fields 2:4 gets what they gain.
+   !>
+   !> Of the 3/4 one half makes up for the two transfers of a step, since it acts twice, and one
+   !> quarter for the lumped mass, on the mean over all directions of a wave.
    subroutine sharpen_rows(grid, carry)
       type(grid_t), intent(inout) :: grid
       logical, intent(in) :: carry   !! whether 5:7 are the change of 2:4
@@ -133,7 +136,7 @@ contains
          call active_rows(grid, b, first, last)
          do i = first, last
             if (.not. grid%node(1, i) > 0) cycle
-            gain = 0.5_wp*(grid%node(5:7, i) - grid%second(:, i)/grid%node(1, i))
+            gain = 0.75_wp*(grid%node(5:7, i) - grid%second(:, i)/grid%node(1, i))
             grid%node(5:7, i) = grid%node(5:7, i) + gain
             if (carry) grid%node(2:4, i) = grid%node(2:4, i) + gain
             grid%second(:, i) = 0

@@ -135,7 +135,8 @@ contains
       if (m%time < m%options%damped_until) rate = m%options%viscous
    end function damping_of
 
-   !> Corrected inertia: the change of velocity gets back half of what a step's transfers smooth.
+   !> Corrected inertia: the change of velocity gets back half of what a step's transfers and lumped
+   !> masses slow.
    subroutine sharpen_change(m, dt)
       type(model_t), intent(inout) :: m
       real(wp), intent(in) :: dt   !! [time]

@@ -54,7 +54,7 @@ for shape in linear gimp; do
    try "$shape" musl xpic graded 0.005 0.05
    try "$shape" usl xpic graded 0.015 0.05
 done
-# Corrected inertia: 0.004 to 0.005 on 2026-11-22, since the first half of a load's work is taken with
+# Corrected inertia: 0.006 to 0.007 on 2026-11-22, since the first half of a load's work is taken with
 # the velocity as it was.
 for shape in linear gimp; do
    try "$shape" 'musl, inertia = corrected' flip graded 0.01 none
