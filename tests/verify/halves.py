@@ -3,20 +3,66 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
+from verify.driver import Row
 from verify.measure import ROOT, RunError
+from verify.measure import Run as Measured
 from xmpm_post import Run
 
+POISSON = 0.298  # of both decks
+DENSITY, LOAD, LENGTH = 7.9e-3, 400.0, 100.0  # likewise; g/mm^3, MPa, mm
 
-def shipped(name: str, h: float, end: float) -> str:
+
+@dataclass(frozen=True)
+class Body:
+    """A body along z, pulled at both ends, that a crack cuts into two halves."""
+
+    case: str  #: name of the case
+    places: np.ndarray  #: (n,2) columns of its particles in the plane x, y
+    section: float  #: area of a section [mm^2]
+    mixed: float  #: K_II/K_I at the beginning, as expected
+    cut: float  #: when no front is left, as expected [ms]
+
+
+def judge_halves(body: Body, run: Measured, method: str, h: float) -> Iterator[Row]:
+    """Rows that any such body has."""
+    results = Run(run.folder, run.name)
+
+    def row(what: str, value: float, reference: float, limit: float | None, error=None) -> Row:
+        return Row.of(body.case, method, h, run, what, value, reference, limit, error)
+
+    before, after = before_and_after(results)
+    yield row("K_II/K_I at the beginning", before["II"], body.mixed, None)
+    yield row("K_II/K_I half-way", after["II"], 0.0, 0.1, after["II"])
+    limits = {"II": 0.01, "III": 0.01 if method == "schoellmann" else None}
+    for mode, limit in limits.items():
+        yield row(f"G_{mode}/G, beginning", before[f"G_{mode}"], 0.0, None, before[f"G_{mode}"])
+        yield row(f"G_{mode}/G, half-way", after[f"G_{mode}"], 0.0, limit, after[f"G_{mode}"])
+    time = cut_time(results)
+    left = float(not time > 0)
+    yield row("a front is left (0 or 1)", left, 0.0, 0.0, left)
+    yield row("cut through at [us]", 1e3 * time, 1e3 * body.cut, None)
+    bare = uncovered(results, body.places)
+    yield row("section not covered", bare, 0.0, 0.0, bare)
+    up, down = pulls(results, DENSITY * LENGTH * body.section, LOAD * body.section)
+    yield row("upper half: momentum/impulse", up, 1.0, 0.01)
+    yield row("lower half: momentum/impulse", down, -1.0, 0.01)
+    balance = float(np.abs(results.energy["relative_error"]).max())
+    yield row("balance of energy", balance, 0.0, 0.05, balance)
+
+
+def shipped(name: str, h: float, end: float, criterion: str = "hoop") -> str:
     """A deck of input/ with other cells and another end, that also writes sides of particles."""
     deck = (ROOT / "input" / f"{name}.inp").read_text(encoding="utf-8")
     for pattern, text in (
         (r"(?m)^  h = [^,]*", f"  h = {h!r}"),
         (r"\*TIME end = [^,]*", f"*TIME end = {end!r}"),
         (r"displacement velocity stress", "velocity side"),
+        (r"criterion = hoop", f"criterion = {criterion}"),
     ):
         deck, count = re.subn(pattern, text, deck)
         if count != 1:
@@ -24,30 +70,40 @@ def shipped(name: str, h: float, end: float) -> str:
     return deck
 
 
-def modes(run: Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times, rms of K_II over rms of K_I along the fronts, and mean speed of the front."""
+def modes(run: Run) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray]:
+    """Times, parts of the shear modes, and mean speed of the front.
+
+    "II" is the rms of K_II over the rms of K_I along the fronts, "G_II" and "G_III" are what the
+    modes have of the energy release rate.
+    """
     front = run.front
     times = np.array(front.values("time"))
-    ratio, speed = np.full(len(times), np.nan), np.zeros(len(times))
+    parts = {name: np.full(len(times), np.nan) for name in ("II", "G_II", "G_III")}
+    speed = np.zeros(len(times))
     for i, time in enumerate(times):
         rows = front.where(time=time)
         fits = rows["flags"].astype(int) % 2 == 0  # a domain lies within the material
         speed[i] = rows["tip_speed"].mean()
-        if (rows["K_I"][fits] > 0).any():
-            ratio[i] = np.sqrt((rows["K_II"][fits] ** 2).sum() / (rows["K_I"][fits] ** 2).sum())
-    return times, ratio, speed
+        if not (rows["K_I"][fits] > 0).any():
+            continue
+        square = [(rows[f"K_{mode}"][fits] ** 2).sum() for mode in ("I", "II", "III")]
+        square[2] /= 1 - POISSON
+        parts["II"][i] = np.sqrt(square[1] / square[0])
+        parts["G_II"][i], parts["G_III"][i] = np.array(square[1:]) / sum(square)
+    return times, parts, speed
 
 
-def before_and_after(run: Run) -> tuple[float, float]:
-    """K_II over K_I when growth begins, and its mean over the middle half of the growth."""
-    times, ratio, speed = modes(run)
+def before_and_after(run: Run) -> tuple[dict[str, float], dict[str, float]]:
+    """Parts of the shear modes when growth begins, and their means over its middle half."""
+    times, parts, speed = modes(run)
     moving = np.flatnonzero(speed > 0)
     if not len(moving):
         raise RunError("the crack did not grow")
     first, last = times[moving[0]], times[-1]
     quarter = 0.25 * (last - first)
-    middle = (times > first + quarter) & (times < last - quarter) & np.isfinite(ratio)
-    return float(ratio[moving[0] - 1]), float(ratio[middle].mean())
+    middle = (times > first + quarter) & (times < last - quarter) & np.isfinite(parts["II"])
+    before = {name: float(part[moving[0] - 1]) for name, part in parts.items()}
+    return before, {name: float(part[middle].mean()) for name, part in parts.items()}
 
 
 def cut_time(run: Run) -> float:
