@@ -11,7 +11,8 @@ from xmpm_post import style
 from xmpm_post.errors import PostError
 from xmpm_post.run import Run
 
-PARTS = ("kinetic", "strain", "external", "damping", "transfer", "plastic", "contact", "fracture")
+PARTS = ("kinetic", "strain", "external", "damping", "transfer", "plastic", "contact", "fracture",
+         "unresolved")  # fmt: skip
 
 
 def draw_energy(run: Run, folder: Path, kind: str = "pdf") -> list[str]:
@@ -30,6 +31,9 @@ def draw_energy(run: Run, folder: Path, kind: str = "pdf") -> list[str]:
         upper.legend()
         lower.axhline(0, color="0.7", lw=0.5)
         lower.plot(table["time"], 100 * table["relative_error"], color=style.COLOURS[-1])
+        if "fracture_error" in table and np.any(table["fracture_error"] != 0):
+            lower.plot(table["time"], 100 * table["fracture_error"], "k--", label="with fracture")
+            lower.legend()
         lower.set_ylabel("balance error [%]")
         lower.set_xlabel(style.label_of("time", table.unit("time"), system))
         path = style.save(figure, folder / f"{run.name}_energy.{kind}")

@@ -13,7 +13,7 @@ module xmpm_balance
 
    public :: balance_t, balance_names, balance_units, balance_cells, momenta, balance_columns
 
-   integer, parameter :: balance_columns = 19   !! values of a row
+   integer, parameter :: balance_columns = 21   !! values of a row
 
    !> Energies of all ranks at one time.
    type :: balance_t
@@ -27,9 +27,13 @@ module xmpm_balance
       real(wp) :: transfer = 0         !! lost in transfers: PIC, XPIC, USL [energy]
       real(wp) :: plastic = 0          !! plastic work [energy]
       real(wp) :: contact = 0          !! lost in contact: impact and friction [energy]
-      real(wp) :: fracture = 0         !! taken by crack growth [energy]
+      real(wp) :: fracture = 0         !! taken by crack growth: G dA with G from J [energy]
+      real(wp) :: unresolved = 0       !! kinetic and elastic energy that particles carry and no
+                                       !! node sees, where cracks grow [energy]
       real(wp) :: error = 0            !! what the balance lacks [energy]
       real(wp) :: relative_error = 0   !! error over the largest energy so far
+      real(wp) :: fracture_error = 0   !! what the balance of the energy that nodes see, with
+                                       !! fracture, lacks; over the largest energy so far
       real(wp) :: linear(3) = 0        !! linear momentum [momentum]
       real(wp) :: angular(3) = 0       !! angular momentum about the origin [angular momentum]
    end type balance_t
@@ -41,9 +45,9 @@ contains
       character(len=14) :: names(balance_columns)
 
       names = [character(len=14) :: 'time', 'step', 'dt', 'kinetic', 'strain', 'external', &
-         'damping', 'transfer', 'plastic', 'contact', 'fracture', 'balance_error', &
-         'relative_error', 'momentum_x', 'momentum_y', 'momentum_z', 'angular_x', 'angular_y', &
-         'angular_z']
+         'damping', 'transfer', 'plastic', 'contact', 'fracture', 'unresolved', 'balance_error', &
+         'relative_error', 'fracture_error', 'momentum_x', 'momentum_y', 'momentum_z', &
+         'angular_x', 'angular_y', 'angular_z']
    end function balance_names
 
    !> Units of the columns.
@@ -54,21 +58,22 @@ contains
       units(1) = unit_text(deck, 'time')
       units(2) = '1'
       units(3) = unit_text(deck, 'time')
-      units(4:12) = unit_text(deck, 'energy')
-      units(13) = '1'
-      units(14:16) = unit_text(deck, 'momentum')
-      units(17:19) = unit_text(deck, 'angular momentum')
+      units(4:13) = unit_text(deck, 'energy')
+      units(14:15) = '1'
+      units(16:18) = unit_text(deck, 'momentum')
+      units(19:21) = unit_text(deck, 'angular momentum')
    end function balance_units
 
    !> The row in the order of the columns.
    pure function balance_cells(b) result(cells)
       type(balance_t), intent(in) :: b   !! of all ranks
       type(string_t) :: cells(balance_columns)
-      real(wp) :: values(17)
+      real(wp) :: values(19)
       integer :: i
 
       values = [b%dt, b%kinetic, b%strain, b%external, b%damping, b%transfer, b%plastic, &
-         b%contact, b%fracture, b%error, b%relative_error, b%linear, b%angular]
+         b%contact, b%fracture, b%unresolved, b%error, b%relative_error, b%fracture_error, &
+         b%linear, b%angular]
       cells(1) = cell(b%time)
       cells(2) = cell(b%step)
       do i = 1, size(values)

@@ -4,6 +4,7 @@ module xmpm_ledger
    use xmpm_kinds, only: wp, i8
    use xmpm_communicator, only: sum_all
    use xmpm_balance, only: balance_t, momenta
+   use xmpm_unseen, only: unseen_energy
    use xmpm_model, only: model_t
    implicit none
    private
@@ -33,6 +34,7 @@ contains
       m%contact%lost = 0
       m%rigid%work = 0
       m%ledger%largest = 0
+      m%ledger%unseen_start = 0
       m%ledger%time = m%time
       m%nodal_work%external = 0
       m%nodal_work%damping = 0
@@ -59,11 +61,11 @@ contains
       end associate
    end subroutine note_energies
 
-   !> The balance of the start of the last step, over all ranks; momenta cost a pass over the
-   !> particles. Collective.
+   !> The balance of the start of the last step, over all ranks; momenta, and where cracks grow what
+   !> nodes do not see, cost passes over the particles. Collective.
    subroutine take_balance(m, with_momenta, balance)
       type(model_t), intent(inout) :: m
-      logical, intent(in) :: with_momenta   !! whether they are wanted
+      logical, intent(in) :: with_momenta   !! whether these are wanted
       type(balance_t), intent(out) :: balance
       real(wp) :: sums(6)
 
@@ -87,6 +89,23 @@ contains
          balance%relative_error = 0
          if (l%largest > 0) balance%relative_error = balance%error/l%largest
       end associate
-      if (with_momenta) call momenta(m, balance%linear, balance%angular)
+      if (.not. with_momenta) return
+      call momenta(m, balance%linear, balance%angular)
+      if (allocated(m%growth)) call take_fracture(m, balance)
    end subroutine take_balance
+
+   !> The balance with fracture. What a front releases stays in particles until damping takes it:
+   !> since growth began, energy that no node sees, and losses in the transfer, are not counted, and
+   !> fracture is in their place. Collective.
+   subroutine take_fracture(m, balance)
+      type(model_t), intent(inout) :: m
+      type(balance_t), intent(inout) :: balance
+
+      balance%unresolved = unseen_energy(m)
+      associate (l => m%ledger)
+         if (.not. balance%fracture > 0) l%unseen_start = balance%unresolved + balance%transfer
+         if (l%largest > 0) balance%fracture_error = (balance%error - balance%unresolved &
+            - balance%transfer + l%unseen_start + balance%fracture)/l%largest
+      end associate
+   end subroutine take_fracture
 end module xmpm_ledger

@@ -63,6 +63,8 @@ module xmpm_model
       real(wp) :: contact(2) = 0               !! lost in contact, likewise
       real(wp) :: kinetic_start = 0            !! at the start, all ranks
       real(wp) :: largest = 0                  !! largest energy so far, the measure of the error
+      real(wp) :: unseen_start = 0             !! what no node saw, and losses in transfers, when
+                                               !! cracks began to grow, all ranks
    end type ledger_t
 
    !> A whole run.
