@@ -69,7 +69,7 @@ def table_differences(first: dict, second: dict) -> dict[str, float]:
         a = np.stack([first[n] for n in names])
         b = np.stack([second[n] for n in names])
         assert a.shape == b.shape, "the tables have other lengths"
-        scale = 1.0 if field == "relative_error" else np.abs(a).max()
+        scale = 1.0 if field in ("relative_error", "fracture_error") else np.abs(a).max()
         result[field] = relative(a, b, scale)
     return result
 
