@@ -83,7 +83,10 @@ def draw_fields(study: Study, plates: dict[int, Done]) -> None:
                 dots = panel.scatter(x, y, c=value, s=1.0, lw=0, cmap="RdBu_r", vmin=-most,
                                      vmax=most, rasterized=True)  # fmt: skip
                 panel.set_aspect("equal")
-                figure.colorbar(dots, ax=panel, location="bottom", label=f"{symbol} [{unit}]")
+                panel.set_title(f"{symbol} [{unit}]")
+                figure.colorbar(dots, ax=panel, location="bottom")
+                if done is list(plates.values())[-1]:
+                    panel.set_xlabel("$x$ [mm]")
             row[0].set_ylabel(f"{n} crack{'s' * (n > 1)}, $y$ [mm]")
         style.save(figure, study.picture("fields"))
 

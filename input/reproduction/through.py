@@ -32,32 +32,37 @@ def cut_through(study: Study, done: Done, printed: float | None) -> Iterator[Res
     error = float(np.abs(run.energy["relative_error"]).max())
     yield study.result(done, "balance of energy", error, 0.0, "energy", error)
     draw_crack(run, study.picture("surface"), renderer="matplotlib")
-    draw_modes(study, times, shear, speed)
+    draw_modes(study, times, shear, speed, start)
 
 
 def history(done: Done) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times [us], mean share of modes II and III in G, and mean speed over the front [m/s]."""
     front = done.results.front
     times = np.array(front.values("time"))
-    shear, speed = np.zeros(len(times)), np.zeros(len(times))
+    shear, speed, total = np.zeros((3, len(times)))
     for i, time in enumerate(times):
         rows = front.where(time=time)
         k = np.stack([rows[name] for name in ("K_I", "K_II", "K_III")])
         square = (k**2).sum(axis=0)
-        total = square.sum()
-        shear[i] = square.sum() and (k[1:] ** 2).sum() / total
+        total[i] = square.sum()
+        shear[i] = total[i] and (k[1:] ** 2).sum() / total[i]
         speed[i] = rows["tip_speed"].mean()
-    return 1e3 * times, shear, speed
+    # Before the wave has come the share is that of rounding.
+    return 1e3 * times, np.where(total > 1e-6 * total.max(), shear, np.nan), speed
 
 
-def draw_modes(study: Study, times: np.ndarray, shear: np.ndarray, speed: np.ndarray) -> None:
-    """Share of the shear modes and speed of the front over time."""
+def draw_modes(
+    study: Study, times: np.ndarray, shear: np.ndarray, speed: np.ndarray, start: int
+) -> None:
+    """Share of the shear modes and speed of the front over time; growth begins at `start`."""
     with plt.rc_context(style.LOOK):
         figure, axes = style.panels(2)
         for panel, values, label in (
-            (axes[0], shear, r"$(K_\mathrm{II}^2 + K_\mathrm{III}^2) / \sum K^2$"),
+            (axes[0], 100 * shear, "shear modes in $\\sum K^2$ [%]"),
             (axes[1], speed, "mean speed of the front [m/s]"),
         ):
-            panel.plot(times, values, color=style.COLOURS[0])
-            panel.set(xlabel=r"$t$ [$\mu$s]", ylabel=label, ylim=(0, None))
+            panel.axvline(times[start], color="0.7", lw=0.5, label="growth begins")
+            panel.plot(times, values, ".-", color=style.COLOURS[0])
+            panel.set(xlabel=r"$t$ [$\mu$s]", ylabel=label, xlim=(0, None), ylim=(0, None))
+        axes[0].legend()
         style.save(figure, study.picture("modes"))

@@ -38,6 +38,7 @@ class Scene:
     view: np.ndarray  # (3,) towards the eye
     up: np.ndarray  # (3,) upright in the picture
     title: str
+    length: str  # unit of the points, in brackets, or nothing
 
 
 def front_values(run: Run, time: float, quantity: str) -> tuple[list, list, str]:
@@ -72,6 +73,7 @@ def make_scene(run: Run, time: float | None, field: str, quantity: str | None) -
     _, areas = vertex_normals(crack.points, crack.triangles)
     view, up = tilted_view(areas, crack.points)
     unit = crack.units.get(field, "")
+    length, time_unit = units_of(run)
     return Scene(
         points=crack.points,
         triangles=crack.triangles,
@@ -82,8 +84,18 @@ def make_scene(run: Run, time: float | None, field: str, quantity: str | None) -
         along_label=label,
         view=view,
         up=up,
-        title=f"{run.name}, t = {crack.time:.6g}",
+        title=f"{run.name}, t = {crack.time:.6g} {time_unit}".rstrip(),
+        length=f" [{length}]" if length else "",
     )
+
+
+def units_of(run: Run) -> tuple[str, str]:
+    """Units of length and time; empty where the run does not tell."""
+    try:
+        words = run.energy.provenance.get("unit_system", "").split()
+    except PostError:
+        words = []
+    return (words[0], words[2]) if len(words) == 3 else ("", "")
 
 
 def draw_with_pyvista(scene: Scene, path: Path) -> None:
@@ -129,11 +141,17 @@ def draw_with_matplotlib(scene: Scene, path: Path) -> None:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import MaxNLocator
 
     figure = plt.figure(figsize=(SIZE[0] / 150, SIZE[1] / 150), dpi=150, layout="constrained")
     panel = figure.add_subplot(projection="3d")
     spread = np.ptp(scene.points, axis=0)
     panel.set_box_aspect(np.maximum(spread, 1e-2 * spread.max()))
+    for axis, name, part in zip(
+        (panel.xaxis, panel.yaxis, panel.zaxis), "xyz", spread / spread.max(), strict=True
+    ):
+        axis.set_label_text(name + scene.length)
+        axis.set_major_locator(MaxNLocator(max(1, round(6 * part))))
     faces = panel.plot_trisurf(*scene.points.T, triangles=scene.triangles, cmap="viridis")
     faces.set_array(scene.values[scene.triangles].mean(axis=1))
     faces.set_clim(*limits(scene.values))
