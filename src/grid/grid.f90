@@ -66,17 +66,23 @@ contains
    !> Set all rows to zero; only those that hold anything are touched.
    subroutine clear_rows(grid)
       type(grid_t), intent(inout) :: grid
-      integer :: b, i, first, last
+      integer :: b, first, last
 
       do b = 1, grid%blocks%n_node_blocks + 1
          call active_rows(grid, b, first, last)
-         do i = first, last
-            grid%node(:, i) = 0
-            grid%second(:, i) = 0
-         end do
+         call set_to_zero(row_fields*(last - first + 1), grid%node(:, first:last))
+         call set_to_zero(3*(last - first + 1), grid%second(:, first:last))
       end do
       grid%active = grid%always
    end subroutine clear_rows
+
+   !> Set a stretch of values to zero, as one.
+   pure subroutine set_to_zero(n, values)
+      integer, intent(in) :: n
+      real(wp), intent(inout) :: values(n)
+
+      values = 0
+   end subroutine set_to_zero
 
    !> Rows of an active node block; last < first for one that holds nothing. The block behind the
    !> last one stands for the rows of split nodes.

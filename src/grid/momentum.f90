@@ -25,24 +25,36 @@ contains
       real(wp), intent(in) :: dt           !! from v(n-1/2) to v(n+1/2) [time]
       real(wp), intent(in) :: gravity(3)   !! body force per mass [length/time^2]
       real(wp), intent(in) :: rate         !! of nodal damping [1/time]
-      real(wp) :: m, v(3), change(3)
-      integer :: b, i, first, last
+      integer :: b, first, last
 
       do b = 1, grid%blocks%n_node_blocks + 1
          call active_rows(grid, b, first, last)
-         do i = first, last
-            m = grid%node(1, i)
-            if (.not. m > 0) then
-               grid%node(2:7, i) = 0
-               cycle
-            end if
-            v = grid%node(2:4, i)/m
-            change = dt*(grid%node(5:7, i)/m + gravity - rate*v)
-            grid%node(2:4, i) = v + change
-            grid%node(5:7, i) = change
-         end do
+         call advance_rows(last - first + 1, dt, gravity, rate, grid%node(:, first:last))
       end do
    end subroutine advance_momentum
+
+   !> Mass, momentum and force of rows become mass, velocity and its change.
+   pure subroutine advance_rows(n, dt, gravity, rate, node)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: dt, gravity(3), rate
+      real(wp), intent(inout) :: node(8, n)
+      real(wp) :: per_mass, v, change
+      integer :: i, k
+
+      do i = 1, n
+         if (.not. node(1, i) > 0) then
+            node(2:7, i) = 0
+            cycle
+         end if
+         per_mass = 1/node(1, i)
+         do k = 1, 3
+            v = node(1 + k, i)*per_mass
+            change = dt*(node(4 + k, i)*per_mass + gravity(k) - rate*v)
+            node(1 + k, i) = v + change
+            node(4 + k, i) = change
+         end do
+      end do
+   end subroutine advance_rows
 
    !> Add the work of body force and nodal damping in a step, when conditions and contact have had
    !> their say: exact for the change of the rows' kinetic energy.
@@ -147,20 +159,31 @@ contains
    !> Velocity of MUSL's second map in fields 5:7; grid%second is cleared.
    subroutine velocity_from_second(grid)
       type(grid_t), intent(inout) :: grid
-      integer :: b, i, first, last
+      integer :: b, first, last
 
       do b = 1, grid%blocks%n_node_blocks + 1
          call active_rows(grid, b, first, last)
-         do i = first, last
-            if (grid%node(1, i) > 0) then
-               grid%node(5:7, i) = grid%second(:, i)/grid%node(1, i)
-            else
-               grid%node(5:7, i) = 0
-            end if
-            grid%second(:, i) = 0
-         end do
+         call take_second(last - first + 1, grid%second(:, first:last), grid%node(:, first:last))
       end do
    end subroutine velocity_from_second
+
+   !> Momentum of the second map over mass goes to fields 5:7 of rows, 0 where there is no mass.
+   pure subroutine take_second(n, second, node)
+      integer, intent(in) :: n
+      real(wp), intent(inout) :: second(3, n)   !! cleared
+      real(wp), intent(inout) :: node(8, n)
+      real(wp) :: per_mass
+      integer :: i
+
+      do i = 1, n
+         per_mass = 0
+         if (node(1, i) > 0) per_mass = 1/node(1, i)
+         node(5, i) = per_mass*second(1, i)
+         node(6, i) = per_mass*second(2, i)
+         node(7, i) = per_mass*second(3, i)
+      end do
+      second = 0
+   end subroutine take_second
 
    !> Fields 5:7 become the velocity of fields 2:4 (momentum there where `divide` is asked for).
    subroutine change_from_velocity(grid, divide)

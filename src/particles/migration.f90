@@ -4,11 +4,11 @@ module xmpm_migration
       MPI_STATUSES_IGNORE, MPI_Irecv, MPI_Isend, MPI_Waitall
    use xmpm_kinds, only: wp, i8
    use xmpm_communicator, only: comm_t
-   use xmpm_lattice, only: bin_of, block_of, local_bin, bins_per_block
+   use xmpm_lattice, only: bin_of, bin_corner, block_of, local_bin, bins_per_block
    use xmpm_blocks, only: local_block, owner_of
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, record_t, append_particle, read_record, remove_lane, &
-      move_lane, new_to_bin, n_hot, n_near, near_crack, c_x
+      move_lane, new_to_bin, bin_of_chunk, n_hot, n_near, near_crack, c_x
    implicit none
    private
 
@@ -35,12 +35,19 @@ contains
                                                 !! bin,
                                                 !! or the first of a contact group came to a bin
       type(record_t) :: record
+      real(wp) :: middle(3)
       integer :: i, c, lane, b, to
 
       do i = 1, size(movers)
          c = movers(i)
+         middle = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) &
+            + 0.5_wp*grid%lattice%size
          lane = p%count(c)
          do while (lane > 0)
+            if (is_within(p, lane, c, middle, 0.5_wp*grid%lattice%size)) then
+               lane = lane - 1
+               cycle
+            end if
             call find_bin(p, grid, lane, c, b, to)
             if (to == p%bin(c)) then
                lane = lane - 1
@@ -61,6 +68,18 @@ contains
          end do
       end do
    end subroutine rebin
+
+   !> Whether a particle is inside its bin; most of those that share a chunk with one that left are.
+   pure function is_within(p, lane, chunk, middle, reach) result(within)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: lane, chunk
+      real(wp), intent(in) :: middle(3)   !! of the bin [length]
+      real(wp), intent(in) :: reach       !! half the bin's width [length]
+      logical :: within
+
+      within = max(abs(p%q(lane, 1, chunk) - middle(1)), abs(p%q(lane, 2, chunk) - middle(2)), &
+         abs(p%q(lane, 3, chunk) - middle(3))) < reach
+   end function is_within
 
    !> Where a particle is now: block of this rank and bin, both 0 where the block is not its own.
    pure subroutine find_bin(p, grid, lane, chunk, b, to)
