@@ -14,7 +14,7 @@ module xmpm_bin_list
    !> Bins of a block that hold particles.
    type :: bin_list_t
       integer :: n = 0                            !! bins in the list
-      integer :: first(bins_per_block) = 0        !! first chunk of each
+      integer :: first(bins_per_block + 2) = 0    !! first chunk of each, then 0
       integer :: sided(bins_per_block) = 0        !! number of the sided bin, 0 for most
       type(frame_t) :: frame(bins_per_block)      !! place and scale
    end type bin_list_t
@@ -47,5 +47,6 @@ contains
          bins%frame(n)%base = 1 + at(1) + grid%lattice%width*(at(2) + grid%lattice%width*at(3))
       end do
       bins%n = n
+      bins%first(n + 1:n + 2) = 0
    end subroutine list_bins
 end module xmpm_bin_list

@@ -9,6 +9,7 @@ module xmpm_migration
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, record_t, append_particle, read_record, remove_lane, &
       move_lane, new_to_bin, bin_of_chunk, n_hot, n_near, near_crack, c_x
+   use xmpm_fetch_ahead, only: fetch_chunk
    implicit none
    private
 
@@ -40,6 +41,7 @@ contains
 
       do i = 1, size(movers)
          c = movers(i)
+         if (i < size(movers)) call fetch_chunk(p, movers(i + 1))
          middle = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) &
             + 0.5_wp*grid%lattice%size
          lane = p%count(c)

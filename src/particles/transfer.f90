@@ -8,8 +8,9 @@ module xmpm_transfer
    use xmpm_lattice, only: stencil_offsets
    use xmpm_blocks, only: nodes_per_block
    use xmpm_grid, only: grid_t
-   use xmpm_storage, only: particles_t, lanes, c_m, is_traced
+   use xmpm_storage, only: particles_t, lanes, c_x, c_m, n_hot, is_traced
    use xmpm_trace, only: follow_chunk
+   use xmpm_fetch_ahead, only: fetch_bin, fetch_rows
    use xmpm_kernels, only: kernels_t, tile_nodes
    use xmpm_motion, only: tally_t, lane_tally_t, reduce_tally, change_velocity, note_motion, &
       move_lanes
@@ -55,6 +56,8 @@ contains
          tile(:, :n) = 0
          do k = 1, bins%n
             c = bins%first(k)
+            call fetch_rows(grid, b + 1, k)
+            call fetch_bin(p, bins%first(k + 2), c_x, n_hot)
             bins%frame(k)%half = bodies%half(p%body(c))
             if (bins%sided(k) > 0) then
                call scatter_sided(p, c, kernels, sided, bins%sided(k), offsets, bins%frame(k), grid)
@@ -147,6 +150,8 @@ contains
          second = 0
          do k = 1, bins%n
             c = bins%first(k)
+            call fetch_rows(grid, b + 1, k)
+            call fetch_bin(p, bins%first(k + 2), c_x, c_m)
             bins%frame(k)%half = bodies%half(p%body(c))
             if (bins%sided(k) > 0) then
                call velocity_sided(p, c, kernels, sided, bins%sided(k), offsets, bins%frame(k), &
@@ -190,6 +195,8 @@ contains
          second = 0
          do k = 1, bins%n
             c = bins%first(k)
+            call fetch_rows(grid, b + 1, k)
+            call fetch_bin(p, bins%first(k + 2), c_x, c_m)
             bins%frame(k)%half = bodies%half(p%body(c))
             if (bins%sided(k) > 0) then
                call mean_sided(p, c, kernels, sided, bins%sided(k), offsets, bins%frame(k), field, &
@@ -235,6 +242,9 @@ contains
          call load_tile(grid, b, tile)
          do k = 1, bins%n
             c = bins%first(k)
+            call fetch_rows(grid, b + 1, k)
+            call fetch_bin(p, bins%first(k + 2), c_x, c_x + 2)
+            call fetch_bin(p, bins%first(k + 2), c_m, n_hot)
             do while (c > 0)
                bins%frame(k)%half = bodies%half(p%body(c))
                if (bins%sided(k) == 0) then
@@ -283,6 +293,8 @@ contains
          call load_tile(grid, b, tile)
          do k = 1, bins%n
             c = bins%first(k)
+            call fetch_rows(grid, b + 1, k)
+            call fetch_bin(p, bins%first(k + 2), c_x, c_m)
             do while (c > 0)
                bins%frame(k)%half = bodies%half(p%body(c))
                if (bins%sided(k) == 0) then
