@@ -151,6 +151,7 @@ def draw_with_matplotlib(scene: Scene, path: Path) -> None:
         (panel.xaxis, panel.yaxis, panel.zaxis), "xyz", spread / spread.max(), strict=True
     ):
         axis.set_label_text(name + scene.length)
+        axis.labelpad = 8
         axis.set_major_locator(MaxNLocator(max(1, round(6 * part))))
     faces = panel.plot_trisurf(*scene.points.T, triangles=scene.triangles, cmap="viridis")
     faces.set_array(scene.values[scene.triangles].mean(axis=1))
