@@ -1,15 +1,17 @@
 !> Which nodes are split, their rows, and the bins that must tell sides apart.
 !>
 !> A node is split by a crack where particles with H > 0 and with H < 0 reach it; the sharp rules
-!> ask besides that the node belong to the cells or places that they name. It is split by contact
-!> where bodies of several contact groups reach it: each group but the lowest has its own rows.
+!> ask besides that the node belong to the cells or places that they name, and with GIMP nodes
+!> ahead of the front stay whole where hardly any particle with a side reaches them
+!> (ahead_nodes.f90). It is split by contact where bodies of several contact groups reach it: each
+!> group but the lowest has its own rows.
 module xmpm_split
    use xmpm_kinds, only: wp
    use xmpm_error, only: error_t, raise, code_numerics
    use xmpm_text, only: to_text
    use xmpm_communicator, only: comm_t
    use xmpm_halo, only: halo_t, make_halo, merge_bits
-   use xmpm_lattice, only: stencil_offsets, tile_base, bins_per_block
+   use xmpm_lattice, only: stencil_offsets, tile_base, bins_per_block, gimp_shape
    use xmpm_blocks, only: node_place
    use xmpm_grid, only: grid_t, size_rows, node_position
    use xmpm_sharing, only: sharing_t, add_split_rows
@@ -18,6 +20,7 @@ module xmpm_split
    use xmpm_loads, only: rows_of_bin
    use xmpm_crack, only: crack_t, rule_graded
    use xmpm_front_rules, only: allow_nodes
+   use xmpm_ahead_nodes, only: keep_ahead_whole
    implicit none
    private
 
@@ -43,10 +46,11 @@ module xmpm_split
 contains
 
    !> Find the split nodes, give them rows, list the sided bins, and extend the halo. Collective.
-   subroutine split_nodes(cracks, comm, p, grid, sharing, halo, sided, split, error)
+   subroutine split_nodes(cracks, comm, p, half, grid, sharing, halo, sided, split, error)
       type(crack_t), intent(in) :: cracks(:)
       type(comm_t), intent(in) :: comm
       type(particles_t), intent(in) :: p
+      real(wp), intent(in) :: half(:)             !! (bodies) half a particle's width [cells]
       type(grid_t), intent(inout) :: grid         !! rows are added
       type(sharing_t), intent(in) :: sharing      !! shared rows of ordinary nodes
       type(halo_t), intent(inout) :: halo         !! made anew for all rows
@@ -67,6 +71,9 @@ contains
          call mark_sides(p, grid, i, bits)
          if (cracks(i)%rule /= rule_graded) call allow_nodes(cracks(i), p, grid, allowed_bit, bits)
          call merge_bits(halo, comm, bits)
+         if (fades_at_rest(cracks(i)) .and. grid%lattice%shape == gimp_shape) then
+            call keep_ahead_whole(p, half, grid, i, comm, halo, bits)
+         end if
          call note_split(cracks(i)%rule == rule_graded, i, bits, split, grid, error)
          if (allocated(error)) return
       end do
@@ -78,6 +85,15 @@ contains
       call make_halo(halo, comm%rank, whole%ranks, whole%first, whole%rows, grid%n_rows)
       call list_sided_bins(split, grid, sided, error)
    end subroutine split_nodes
+
+   !> Whether H of a crack fades over a ramp that stays where it is in the material: where it moves,
+   !> it takes nodes in between two looks.
+   pure function fades_at_rest(crack) result(does)
+      type(crack_t), intent(in) :: crack
+      logical :: does
+
+      does = crack%rule == rule_graded .and. .not. allocated(crack%offset)
+   end function fades_at_rest
 
    !> Bits of the sides from which particles reach each node.
    subroutine mark_sides(p, grid, number, bits)

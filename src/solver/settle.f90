@@ -9,6 +9,7 @@ module xmpm_settle
    use xmpm_storage, only: count_particles, c_v, c_m, c_vol
    use xmpm_resort, only: resort_chunks
    use xmpm_migration, only: rebin, exchange
+   use xmpm_lattice, only: gimp_shape
    use xmpm_sharing, only: mark_mine
    use xmpm_boundary, only: find_rows
    use xmpm_crack, only: gather_crack, has_drifted, find_near, rule_graded
@@ -201,7 +202,7 @@ contains
       type(model_t), intent(inout) :: m
       logical, intent(in) :: stale   !! who moves which vertex may have changed
       type(error_t), allocatable, intent(out) :: error
-      logical :: due, drifted
+      logical :: due, drifted, again
       integer :: i
 
       if (size(m%cracks) == 0 .and. .not. m%split_again) return
@@ -218,7 +219,10 @@ contains
          call renew_level_sets(m, error)
          call agree_on_error(m%comm, error)
       end if
-      if (.not. allocated(error) .and. (drifted .or. m%split_again)) call renew_splits(m, error)
+      ! GIMP particles come to reach further nodes also within their bins.
+      again = drifted .or. m%split_again .or. &
+         (due .and. m%grid%lattice%shape == gimp_shape .and. .not. m%bodies_meet)
+      if (.not. allocated(error) .and. again) call renew_splits(m, error)
       call stop_stage(m%clock, stage_crack)
    end subroutine keep_cracks
 
@@ -241,8 +245,8 @@ contains
       type(split_t) :: split
       integer :: i
 
-      call split_nodes(m%cracks, m%comm, m%particles, m%grid, m%sharing, m%halo, m%sided, split, &
-         error)
+      call split_nodes(m%cracks, m%comm, m%particles, m%bodies%half, m%grid, m%sharing, m%halo, &
+         m%sided, split, error)
       call agree_on_error(m%comm, error)
       if (allocated(error)) return
       call mark_mine(m%grid, m%sharing, m%comm%rank)
