@@ -15,6 +15,8 @@ module xmpm_front_reach
    integer, parameter :: most_strides = 12             !! an end is led out by so many at most
    real(wp), parameter :: angles(8) = [0.0_wp, 15.0_wp, -15.0_wp, 30.0_wp, -30.0_wp, 45.0_wp, &
       60.0_wp, 75.0_wp]*pi/180.0_wp                    !! by which it may turn ahead [rad]
+   real(wp), parameter :: leaning = 0.1_wp             !! an end leans back by so much at most,
+                                                       !! before it turns [rad]
    real(wp), parameter :: dear = pi/3                  !! turning by this doubles a way [rad]
    real(wp), parameter :: rest = 1.5_wp                !! material ahead that is cut at once [cells]
 
@@ -23,8 +25,9 @@ contains
    !> Give an open end that has come to lie in the material a further node outside.
    !>
    !> The shortest way out is taken, in the surface, and rather straight on: a front that runs along
-   !> a wall would else be led on by many cells. Where there is none, and for one whose triangles
-   !> did not hold, the old end stays and the front turns about it.
+   !> a wall would else be led on by many cells. An end that already leans back is first turned
+   !> straight out, or it would lean further at each growth. Where there is no way out, and for a
+   !> front whose triangles did not hold, the old end stays and the front turns about it.
    pure subroutine reach_out(line, front, chain, limits, material, turns)
       type(line_t), intent(inout) :: line
       type(front_t), intent(in) :: front               !! old fronts
@@ -32,8 +35,8 @@ contains
       type(front_limits_t), intent(in) :: limits
       class(material_test_t), intent(in) :: material   !! where material is
       logical, intent(in) :: turns                     !! the old end stays
-      integer :: side, end_node, before, old
-      real(wp) :: x(3)
+      integer :: side, end_node, before, inner, old
+      real(wp) :: x(3), t(3)
       logical :: found
 
       if (line%closed .or. line%n < 2) return
@@ -44,9 +47,11 @@ contains
          if (.not. material%inside(line%x(:, end_node))) cycle
          old = merge(front%chain_offset(chain), front%chain_offset(chain + 1) - 1, side == 1)
          found = .false.
-         if (.not. turns) call way_out(line%x(:, end_node), unit_vector(line%x(:, end_node) &
-            - line%x(:, before)), front%e1(:, parent_of(line, end_node)), limits%cell, material, &
-            x, found)
+         inner = merge(min(3, line%n), max(1, line%n - 2), side == 1)
+         t = unit_vector(line%x(:, end_node) - line%x(:, before))
+         if (.not. turns) call way_out(line%x(:, end_node), &
+            not_behind(t, front%e1(:, parent_of(line, inner))), &
+            front%e1(:, parent_of(line, end_node)), limits%cell, material, x, found)
          if (found) then
             call insert_node(line, merge(0, line%n, side == 1), x, line%from(:, end_node), &
                line%share(end_node))
@@ -57,6 +62,18 @@ contains
          end if
       end do
    end subroutine reach_out
+
+   !> A direction out of a front's end that leans back by an angle at the most.
+   pure function not_behind(t, ahead) result(d)
+      real(wp), intent(in) :: t(3)       !! out of the front
+      real(wp), intent(in) :: ahead(3)   !! e1 further inside
+      real(wp) :: d(3), back, out
+
+      back = dot_product(t, ahead)
+      out = norm2(t - back*ahead)
+      d = t
+      if (back < -tan(leaning)*out) d = unit_vector(t - (back + tan(leaning)*out)*ahead)
+   end function not_behind
 
    !> The nearest place outside, in the plane of two directions; turning away counts as longer.
    pure subroutine way_out(x, t, ahead, h, material, place, found)
