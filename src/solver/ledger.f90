@@ -91,7 +91,8 @@ contains
       end associate
       if (.not. with_momenta) return
       call momenta(m, balance%linear, balance%angular)
-      if (allocated(m%growth)) call take_fracture(m, balance)
+      if (.not. allocated(m%growth)) return
+      if (size(m%growth) > 0) call take_fracture(m, balance)
    end subroutine take_balance
 
    !> The balance with fracture. What a front releases stays in particles until damping takes it:
