@@ -172,7 +172,7 @@ def pulls(run: Run, mass: float, force: float) -> tuple[float, float]:
     Both halves are then free bodies, whose momentum grows with the force on their ends alone.
     `mass` is that of the body; particles share it alike, though those at a round wall are cut.
     Near the crack a particle knows its side, of which either may be above; far from it its
-    place tells.
+    place tells, over or under those of its column that know.
     """
     times = after_cut(run, "particles")
     momenta = []
@@ -180,9 +180,20 @@ def pulls(run: Run, mass: float, force: float) -> tuple[float, float]:
         p = run.particles(time)
         side = np.asarray(p.fields["side"], dtype=float)
         up = np.sign(p.points[side > 0, 2].mean() - p.points[side < 0, 2].mean())
-        upper = np.where(np.abs(side) > 0, up * side, p.points[:, 2]) > 0
+        upper = np.where(np.abs(side) > 0, up * side, height_over(p.points, side)) > 0
         axial = mass / len(side) * p.fields["velocity"][:, 2]
         momenta.append((axial[upper].sum(), axial[~upper].sum()))
     span = force * (times[-1] - times[0])
     up, down = (float(b - a) / span for a, b in zip(*momenta, strict=True))
     return up, down
+
+
+def height_over(x: np.ndarray, side: np.ndarray) -> np.ndarray:
+    """Height of particles (n,3) over the mean of those of their column that know their side."""
+    low = x[:, :2].min(axis=0)
+    steps = ((x[:, :2] - low) / (np.ptp(x[:, :2], axis=0) / 20 + 1e-9)).astype(int)
+    column = 20 * steps[:, 0] + steps[:, 1]
+    knows = np.abs(side) > 0
+    count = np.bincount(column[knows], minlength=400)
+    total = np.bincount(column[knows], x[knows, 2], minlength=400)
+    return x[:, 2] - (total / np.maximum(count, 1))[column]
