@@ -16,18 +16,19 @@ module xmpm_chunk_state
 
 contains
 
-   !> Nodal force at the particles and velocity gradient, from rows that hold mass, momentum and
-   !> force as P2G leaves them.
+   !> Nodal force at the particles and, where `moving` asks for it, velocity gradient (else 0), from
+   !> rows that hold mass, momentum and force as P2G leaves them.
    !>
    !> The pull is m sum N f/m: the force that stress (and loads) exert on a particle. Damping and
    !> body forces are not in it, so that it stands for the divergence of stress.
-   subroutine pull_and_rate(p, c, half, kernels, sided, grid, pull, rate)
+   subroutine pull_and_rate(p, c, half, kernels, sided, grid, moving, pull, rate)
       type(particles_t), intent(in) :: p
       integer, intent(in) :: c                     !! chunk
       real(wp), intent(in) :: half                 !! half a particle's width [cells]
       type(kernels_t), intent(in) :: kernels
       type(sided_t), intent(in) :: sided
       type(grid_t), intent(in) :: grid
+      logical, intent(in) :: moving                !! whether the velocity gradient is wanted
       real(wp), intent(out) :: pull(lanes, 3)      !! [force]
       real(wp), intent(out) :: rate(lanes, 9)      !! dv_i/dx_j at 3 (i - 1) + j [1/time]
       real(wp) :: tile(8, tile_nodes), g(lanes), slope(lanes, 3), part(lanes, 9), value(lanes, 3)
@@ -41,22 +42,23 @@ contains
       s = 0
       if (sided%n > 0) s = sided%bin(1 + mod(p%bin(c) - 1, bins_per_block), &
          1 + (p%bin(c) - 1)/bins_per_block)
+      rate = 0
       if (s == 0) then
-         call load_rows(grid, rows_of_bin(grid, p%bin(c), offsets), offsets, tile)
-         call kernels%gradient(p%q(:, :, c), frame, tile, rate, pull)
+         call load_rows(grid, rows_of_bin(grid, p%bin(c), offsets), offsets, moving, tile)
+         call state_of_rows(p, c, frame, kernels, tile, moving, rate, pull)
       else
-         rate = 0
          pull = 0
          do set = 0, 2**sided%n_cracks(s) - 1
             call side_weights(p, c, sided%crack(:sided%n_cracks(s), s), set, g, slope)
             if (.not. (any(g > 0) .or. any(abs(slope) > 0))) cycle
-            call load_rows(grid, sided%rows(:, set, s), offsets, tile)
-            call kernels%gradient(p%q(:, :, c), frame, tile, part, value)
-            do i = 1, 9
-               rate(:, i) = rate(:, i) + g*part(:, i)
-            end do
+            call load_rows(grid, sided%rows(:, set, s), offsets, moving, tile)
+            call state_of_rows(p, c, frame, kernels, tile, moving, part, value)
             do i = 1, 3
                pull(:, i) = pull(:, i) + g*value(:, i)
+            end do
+            if (.not. moving) cycle
+            do i = 1, 9
+               rate(:, i) = rate(:, i) + g*part(:, i)
             end do
             if (.not. any(abs(slope) > 0)) cycle
             call kernels%gather(p%q(:, :, c), frame, tile, 5, value)
@@ -72,10 +74,30 @@ contains
       end do
    end subroutine pull_and_rate
 
-   !> Accelerations to fields 2:4 and velocities to fields 5:7 of the stencil's places of a tile.
-   pure subroutine load_rows(grid, rows, offsets, tile)
+   !> Value of fields 2:4 of a tile and, where wanted, the gradient of fields 5:7.
+   subroutine state_of_rows(p, c, frame, kernels, tile, moving, gradient, value)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: c                          !! chunk
+      type(frame_t), intent(in) :: frame
+      type(kernels_t), intent(in) :: kernels
+      real(wp), intent(in) :: tile(8, tile_nodes)
+      logical, intent(in) :: moving
+      real(wp), intent(inout) :: gradient(lanes, 9)     !! left alone where it is not wanted
+      real(wp), intent(out) :: value(lanes, 3)
+
+      if (moving) then
+         call kernels%gradient(p%q(:, :, c), frame, tile, gradient, value)
+      else
+         call kernels%gather(p%q(:, :, c), frame, tile, 2, value)
+      end if
+   end subroutine state_of_rows
+
+   !> Accelerations to fields 2:4 and, where wanted, velocities to fields 5:7 of the stencil's
+   !> places of a tile.
+   pure subroutine load_rows(grid, rows, offsets, moving, tile)
       type(grid_t), intent(in) :: grid
       integer, intent(in) :: rows(:), offsets(:)
+      logical, intent(in) :: moving
       real(wp), intent(inout) :: tile(8, tile_nodes)
       real(wp) :: per_mass
       integer :: i
@@ -85,7 +107,7 @@ contains
          if (.not. grid%node(1, rows(i)) > 0) cycle
          per_mass = 1/grid%node(1, rows(i))
          tile(2:4, 1 + offsets(i)) = per_mass*grid%node(5:7, rows(i))
-         tile(5:7, 1 + offsets(i)) = per_mass*grid%node(2:4, rows(i))
+         if (moving) tile(5:7, 1 + offsets(i)) = per_mass*grid%node(2:4, rows(i))
       end do
    end subroutine load_rows
 end module xmpm_chunk_state

@@ -15,6 +15,7 @@ module xmpm_domain_integral
    use xmpm_front, only: front_t
    use xmpm_storage, only: lanes
    use xmpm_samples, only: sample_t
+   use xmpm_cosine_fall, only: cosine_fall
    use xmpm_front_points, only: front_points_t, window_at, direction_at, same_part
    use xmpm_domain_lanes, only: view_t, look, aim, flux_along, strain_along
    implicit none
@@ -80,14 +81,16 @@ contains
       type(batch_t) :: batch(points%n)
       type(lane_sums_t) :: lane_sums(points%n)
       real(wp), allocatable :: weights(:, :, :)
+      real(wp) :: reach
       integer :: near(points%n), i, k, n, m
 
+      reach = maxval(shape%radius)
       allocate (weights(2, size(shape%radius), size(samples)))
       do m = 1, points%n
          allocate (lane_sums(m)%part(lanes, 6, size(shape%radius)), source=0.0_wp)
       end do
       do i = 1, size(samples)
-         if (samples(i)%r >= maxval(shape%radius)) cycle
+         if (samples(i)%r >= reach) cycle
          call points_near(front, points, samples(i), shape%reach, near, n)
          do k = 1, size(shape%radius)
             call profile(samples(i)%r, shape%inner, shape%radius(k), weights(1, k, i), &
@@ -293,16 +296,14 @@ contains
    pure subroutine profile(r, inner, outer, w, dw)
       real(wp), intent(in) :: r, inner, outer   !! [length]
       real(wp), intent(out) :: w, dw            !! 0 to 1, [1/length]
-      real(wp) :: z
 
       w = 1
       dw = 0
       if (r <= inner) return
       w = 0
       if (r >= outer) return
-      z = pi*(r - inner)/(outer - inner)
-      w = 0.5_wp*(1 + cos(z))
-      dw = -0.5_wp*pi/(outer - inner)*sin(z)
+      call cosine_fall((r - inner)/(outer - inner), w, dw)
+      dw = dw/(outer - inner)
    end subroutine profile
 
    !> Integral of w over the plane normal to a front: what the volume is over the window length.

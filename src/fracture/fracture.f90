@@ -118,6 +118,7 @@ contains
       type(face_points_t) :: faces
       real(wp), allocatable :: drift(:, :)
       real(wp) :: reach
+      logical :: moving
 
       associate (number => fracture%cracks(which), shape => fracture%shape)
          crack = cracks(number)
@@ -130,8 +131,9 @@ contains
          values%speed = speed
          reach = maxval(shape%radius)
          if (any(fracture%methods /= method_domain)) reach = reach + shape%support
-         call collect_samples(crack, number, reach, allocated(crack%offset), comm, halo, grid, p, &
-            bodies, kernels, sided, loads, time, samples)
+         moving = any(speed > 0) .or. any(fracture%methods /= method_domain)
+         call collect_samples(crack, number, reach, allocated(crack%offset), moving, comm, halo, &
+            grid, p, bodies, kernels, sided, loads, time, samples)
          call find_ends(crack%front, comm, grid%lattice%size, samples, values%points)
          call clear_sums(sums, size(shape%radius), values%points%n)
          drift = drift_at(samples, values%points, speed, comm)

@@ -6,6 +6,7 @@ module xmpm_front_points
    use xmpm_front, only: front_t, refresh_front
    use xmpm_crack, only: crack_t
    use xmpm_vectors, only: unit_vector
+   use xmpm_cosine_fall, only: cosine_fall
    implicit none
    private
 
@@ -207,8 +208,8 @@ contains
       l = 0
       slope = 0
       if (abs(xi) >= half_width) return
-      l = 0.5_wp*(1 + cos(pi*xi/half_width))
-      slope = -0.5_wp*pi/half_width*sin(pi*xi/half_width)
+      call cosine_fall(abs(xi)/half_width, l, slope)
+      slope = sign(slope, -xi)/half_width
    end subroutine window_at
 
    !> Integral of l e1 . n over the front in the material: what J of the window is divided by.

@@ -55,12 +55,13 @@ contains
    !> The traced particles of this rank within reach of the fronts of a crack. The rows hold mass,
    !> momentum and force as P2G leaves them. With `resolve` stress, deformation and velocity are
    !> what the grid resolves of them. Collective.
-   subroutine collect_samples(crack, number, reach, resolve, comm, halo, grid, p, bodies, kernels, &
-         sided, loads, time, samples)
+   subroutine collect_samples(crack, number, reach, resolve, moving, comm, halo, grid, p, bodies, &
+         kernels, sided, loads, time, samples)
       type(crack_t), intent(in) :: crack                      !! gathered
       integer, intent(in) :: number                           !! of the crack
       real(wp), intent(in) :: reach                           !! [length]
       logical, intent(in) :: resolve
+      logical, intent(in) :: moving                           !! velocity gradients are wanted
       type(comm_t), intent(in) :: comm
       type(halo_t), intent(inout) :: halo
       type(grid_t), intent(in) :: grid
@@ -89,10 +90,10 @@ contains
       do i = 1, size(near)
          if (resolve) then
             call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, &
-               sided, loads, time, samples, n, fields(:, :, i))
+               sided, loads, time, moving, samples, n, fields(:, :, i))
          else
             call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, &
-               sided, loads, time, samples, n)
+               sided, loads, time, moving, samples, n)
          end if
       end do
       samples = samples(:n)
@@ -139,7 +140,7 @@ contains
 
    !> Append the particles of one chunk, for which there is room.
    subroutine sample_chunk(front, number, reach, grid, p, c, bodies, kernels, sided, loads, time, &
-         samples, n, fields)
+         moving, samples, n, fields)
       type(front_t), intent(in) :: front
       integer, intent(in) :: number, c
       real(wp), intent(in) :: reach, time
@@ -149,6 +150,7 @@ contains
       type(kernels_t), intent(in) :: kernels
       type(sided_t), intent(in) :: sided
       type(load_t), intent(in) :: loads(:)
+      logical, intent(in) :: moving
       type(sample_t), intent(inout) :: samples(:)
       integer, intent(inout) :: n
       real(wp), intent(in), optional :: fields(:, :)   !! (8,18) instead of what particles carry
@@ -156,7 +158,8 @@ contains
       logical :: inside
       integer :: i
 
-      call pull_and_rate(p, c, bodies%half(p%body(c)), kernels, sided, grid, pull, rate)
+      call pull_and_rate(p, c, bodies%half(p%body(c)), kernels, sided, grid, moving, pull, &
+         rate)
       do i = 1, size(loads)
          call force_on_lanes(loads(i), p, grid, c, time, load)
          pull = pull - load
