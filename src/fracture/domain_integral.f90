@@ -7,7 +7,8 @@
 !>
 !> holds for any front, straight or curved, since q is any field that is l e1 on the front and
 !> tangent to the faces. f = V s_ij,j is what the nodes say, so that inertia, body forces and
-!> damping need no terms of their own (tractions between the faces: xmpm_face_work). For a front that moves at C > 0 the
+!> damping need no terms of their own (tractions between the faces: xmpm_face_work).
+!> For a front that moves at C > 0 the
 !> kinetic energy adds - V E q_k,k - V rho v_i v_i,k q_k, v relative to the material at the front
 !> (the two cancel in the sum at C = 0, where their quadrature would only add noise).
 module xmpm_domain_integral
