@@ -62,7 +62,8 @@ contains
          end if
          jump = 0
          if (p%attached(chunk) > 0) then
-            call find_jumps(p%slots, p%near(:, :, p%attached(chunk)), p%count(chunk), cracks(k), jump)
+            call find_jumps(p%slots, p%near(:, :, p%attached(chunk)), p%count(chunk), &
+               cracks(k), jump)
          end if
          sign = merge(0.5_wp, -0.5_wp, btest(set, k - 1))
          do i = 1, lanes
@@ -78,7 +79,7 @@ contains
    !> H of a crack and its gradient in the lanes that have a slot of it; others stay as they are.
    pure subroutine find_jumps(slots, near, n, crack, jump)
       integer, intent(in) :: slots
-      real(wp), intent(in) :: near(lanes, *)       !! near record of the chunk
+      real(wp), intent(in) :: near(:, :)           !! near record of the chunk
       integer, intent(in) :: n                     !! lanes in use
       integer, intent(in) :: crack
       real(wp), intent(inout) :: jump(lanes, 4)    !! H, gradient of H [1/length]
@@ -87,9 +88,9 @@ contains
 
       do slot = 0, slots - 1
          at = n_near*slot
-         mine = merge(1.0_wp, 0.0_wp, abs(near(:lanes, at + near_crack) - real(crack, wp)) < 0.5_wp)
+         mine = merge(1.0_wp, 0.0_wp, abs(near(:, at + near_crack) - real(crack, wp)) < 0.5_wp)
          do i = 0, 3
-            jump(:, 1 + i) = jump(:, 1 + i) + mine*near(:lanes, at + near_jump + i)
+            jump(:, 1 + i) = jump(:, 1 + i) + mine*near(:, at + near_jump + i)
          end do
          if (all(mine(:n) > 0)) exit
       end do
