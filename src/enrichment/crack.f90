@@ -99,10 +99,19 @@ contains
       if (.not. allocated(crack%mine)) allocate (crack%mine(crack%surface%vertex_count))
       do v = 1, size(crack%mine)
          crack%mine(v) = owner_of(grid%blocks, &
-            block_of(bin_of(grid%lattice, crack%surface%x(:, v)))) == rank
+            block_of(bin_of(grid%lattice, place_of(crack%surface, v)))) == rank
       end do
       crack%stale = .false.
    end subroutine take_vertices
+
+   !> Where a vertex is now: between both faces. The geometry has the places of its last renewal.
+   pure function place_of(surface, v) result(x)
+      type(surface_t), intent(in) :: surface
+      integer, intent(in) :: v   !! vertex
+      real(wp) :: x(3)           !! [length]
+
+      x = surface%start(:, v) + 0.5_wp*(surface%up(:, v) + surface%um(:, v))
+   end function place_of
 
    !> H at the vertices, from their distance to the front.
    subroutine weigh_vertices(crack, h)
@@ -377,25 +386,23 @@ contains
       type(grid_t), intent(in) :: grid
       type(sided_t), intent(in) :: sided
       real(wp), intent(in) :: dt               !! [time]
-      real(wp) :: plus(3), minus(3), g
+      real(wp) :: x(3), plus(3), minus(3), g
       integer :: v, b, bin(3)
 
       do v = 1, size(crack%mine)
          if (.not. crack%mine(v)) cycle
-         bin = bin_of(grid%lattice, crack%surface%x(:, v))
+         x = place_of(crack%surface, v)
+         bin = bin_of(grid%lattice, x)
          b = local_block(grid%blocks, block_of(bin))
          if (b == 0) then
             crack%stale = .true.
             cycle
          end if
-         call face_velocities(grid, sided, number, crack%surface%x(:, v), bin, b, plus, minus, &
-            crack%material(v))
+         call face_velocities(grid, sided, number, x, bin, b, plus, minus, crack%material(v))
          g = 0.5_wp*(1 + crack%weight(v))
          crack%surface%up(:, v) = crack%surface%up(:, v) + dt*(g*plus + (1 - g)*minus)
          crack%surface%um(:, v) = crack%surface%um(:, v) + dt*(g*minus + (1 - g)*plus)
-         crack%surface%x(:, v) = crack%surface%start(:, v) &
-            + 0.5_wp*(crack%surface%up(:, v) + crack%surface%um(:, v))
-         bin = bin_of(grid%lattice, crack%surface%x(:, v))
+         bin = bin_of(grid%lattice, place_of(crack%surface, v))
          if (local_block(grid%blocks, block_of(bin)) == 0) crack%stale = .true.
       end do
    end subroutine advance_crack
@@ -456,8 +463,9 @@ contains
    !> Bring the vertices of all ranks together and, if it is time to, let those without material
    !> follow and renew geometry and H. Collective.
    !>
-   !> A vertex may leave the blocks of its rank at any step. If that renewed the geometry, fields
-   !> would depend on the number of ranks; only the sharp rules, which look for nodes then, need it.
+   !> A vertex may leave the blocks of its rank at any step. If that renewed the geometry, places
+   !> included, fields would depend on the number of ranks; only the sharp rules, which look for
+   !> nodes then, need it.
    subroutine gather_crack(crack, comm, grid, follow)
       type(crack_t), intent(inout) :: crack
       type(comm_t), intent(in) :: comm
@@ -484,9 +492,9 @@ contains
       if (follow .and. any(crack%material) .and. .not. all(crack%material)) then
          call fill_void(crack%surface, crack%material)
       end if
-      crack%surface%x = crack%surface%start + 0.5_wp*(crack%surface%up + crack%surface%um)
       call take_vertices(crack, comm%rank, grid)
       if (.not. follow .and. crack%rule == rule_graded) return
+      crack%surface%x = crack%surface%start + 0.5_wp*(crack%surface%up + crack%surface%um)
       call refresh_geometry(crack%surface)
       call refresh_index(crack%surface, crack%index)
       call refresh_front(crack%surface, crack%front)
