@@ -13,7 +13,7 @@ module xmpm_balance
 
    public :: balance_t, balance_names, balance_units, balance_cells, momenta, balance_columns
 
-   integer, parameter :: balance_columns = 21   !! values of a row
+   integer, parameter :: balance_columns = 22   !! values of a row
 
    !> Energies of all ranks at one time.
    type :: balance_t
@@ -25,6 +25,8 @@ module xmpm_balance
       real(wp) :: external = 0         !! work of loads, body forces and conditions [energy]
       real(wp) :: damping = 0          !! lost to damping [energy]
       real(wp) :: transfer = 0         !! lost in transfers: PIC, XPIC, USL [energy]
+      real(wp) :: transfer_seen = 0    !! the part of it that nodes saw, since cracks began to
+                                       !! grow [energy]
       real(wp) :: plastic = 0          !! plastic work [energy]
       real(wp) :: contact = 0          !! lost in contact: impact and friction [energy]
       real(wp) :: fracture = 0         !! taken by crack growth: G dA with G from J [energy]
@@ -42,11 +44,12 @@ contains
 
    !> Names of the columns.
    pure function balance_names() result(names)
-      character(len=14) :: names(balance_columns)
+      character(len=16) :: names(balance_columns)
 
-      names = [character(len=14) :: 'time', 'step', 'dt', 'kinetic', 'strain', 'external', &
-         'damping', 'transfer', 'plastic', 'contact', 'fracture', 'unresolved', 'balance_error', &
-         'relative_error', 'fracture_error', 'momentum_x', 'momentum_y', 'momentum_z', &
+      names = [character(len=16) :: 'time', 'step', 'dt', 'kinetic', 'strain', 'external', &
+         'damping', 'transfer', 'plastic', 'contact', 'fracture', 'unresolved', 'transfer_seen', &
+         'balance_error', 'relative_error', 'fracture_error', &
+         'momentum_x', 'momentum_y', 'momentum_z', &
          'angular_x', 'angular_y', 'angular_z']
    end function balance_names
 
@@ -58,22 +61,22 @@ contains
       units(1) = unit_text(deck, 'time')
       units(2) = '1'
       units(3) = unit_text(deck, 'time')
-      units(4:13) = unit_text(deck, 'energy')
-      units(14:15) = '1'
-      units(16:18) = unit_text(deck, 'momentum')
-      units(19:21) = unit_text(deck, 'angular momentum')
+      units(4:14) = unit_text(deck, 'energy')
+      units(15:16) = '1'
+      units(17:19) = unit_text(deck, 'momentum')
+      units(20:22) = unit_text(deck, 'angular momentum')
    end function balance_units
 
    !> The row in the order of the columns.
    pure function balance_cells(b) result(cells)
       type(balance_t), intent(in) :: b   !! of all ranks
       type(string_t) :: cells(balance_columns)
-      real(wp) :: values(19)
+      real(wp) :: values(20)
       integer :: i
 
       values = [b%dt, b%kinetic, b%strain, b%external, b%damping, b%transfer, b%plastic, &
-         b%contact, b%fracture, b%unresolved, b%error, b%relative_error, b%fracture_error, &
-         b%linear, b%angular]
+         b%contact, b%fracture, b%unresolved, b%transfer_seen, b%error, b%relative_error, &
+         b%fracture_error, b%linear, b%angular]
       cells(1) = cell(b%time)
       cells(2) = cell(b%step)
       do i = 1, size(values)

@@ -30,6 +30,7 @@ contains
       m%ledger%external = 0
       m%ledger%damping = 0
       m%ledger%transfer = 0
+      m%ledger%seen = 0
       m%ledger%contact = 0
       m%contact%lost = 0
       m%rigid%work = 0
@@ -39,6 +40,7 @@ contains
       m%nodal_work%external = 0
       m%nodal_work%damping = 0
       m%transfer_loss = 0
+      m%seen_loss = 0
       m%loads%work = 0
       m%boundaries%work = 0
       call sum_all(m%comm, kinetic)
@@ -55,6 +57,7 @@ contains
          l%strain = [l%strain(2), l%strain(2) + m%tally%work]
          l%damping = [l%damping(2), m%nodal_work%damping]
          l%transfer = [l%transfer(2), m%transfer_loss]
+         l%seen = [l%seen(2), m%seen_loss]
          l%contact = [l%contact(2), m%contact%lost]
          l%external = [l%external(2), m%nodal_work%external + sum(m%loads%work) &
             + sum(m%boundaries%work) + m%rigid%work]
@@ -67,11 +70,12 @@ contains
       type(model_t), intent(inout) :: m
       logical, intent(in) :: with_momenta   !! whether these are wanted
       type(balance_t), intent(out) :: balance
-      real(wp) :: sums(6)
+      real(wp) :: sums(7)
 
       associate (l => m%ledger)
          sums = [0.5_wp*sum(l%kinetic), l%strain(1), 0.5_wp*sum(l%external), &
-            0.5_wp*sum(l%damping), 0.5_wp*sum(l%transfer), 0.5_wp*sum(l%contact)]
+            0.5_wp*sum(l%damping), 0.5_wp*sum(l%transfer), 0.5_wp*sum(l%contact), &
+            0.5_wp*sum(l%seen)]
          call sum_all(m%comm, sums)
          balance%time = l%time
          balance%step = max(0_i8, m%step - 1)
@@ -83,6 +87,7 @@ contains
          balance%transfer = sums(5)
          if (allocated(m%growth)) balance%fracture = sum(m%growth%energy)
          balance%contact = sums(6)
+         balance%transfer_seen = sums(7)
          balance%error = sums(1) - l%kinetic_start + sums(2) + sums(4) + sums(5) + sums(6) &
             - sums(3)
          l%largest = max(l%largest, sums(1), abs(sums(2)), abs(sums(3)), l%kinetic_start)
@@ -95,18 +100,21 @@ contains
       if (size(m%growth) > 0) call take_fracture(m, balance)
    end subroutine take_balance
 
-   !> The balance with fracture. What a front releases stays in particles until damping takes it:
-   !> since growth began, energy that no node sees, and losses in the transfer, are not counted, and
-   !> fracture is in their place. Collective.
+   !> The balance of the energy that nodes see, with fracture. What a front releases stays in parts
+   !> of the particles' fields that no node sees until the transfer takes it from there: since
+   !> growth began, these parts and what the transfer took of them are not counted, and fracture is
+   !> in their place. Collective.
    subroutine take_fracture(m, balance)
       type(model_t), intent(inout) :: m
       type(balance_t), intent(inout) :: balance
+      real(wp) :: unseen
 
       balance%unresolved = unseen_energy(m)
+      unseen = balance%unresolved + balance%transfer - balance%transfer_seen
       associate (l => m%ledger)
-         if (.not. balance%fracture > 0) l%unseen_start = balance%unresolved + balance%transfer
-         if (l%largest > 0) balance%fracture_error = (balance%error - balance%unresolved &
-            - balance%transfer + l%unseen_start + balance%fracture)/l%largest
+         if (.not. balance%fracture > 0) l%unseen_start = unseen
+         if (l%largest > 0) balance%fracture_error = (balance%error - unseen + l%unseen_start &
+            + balance%fracture)/l%largest
       end associate
    end subroutine take_fracture
 end module xmpm_ledger

@@ -60,10 +60,12 @@ module xmpm_model
                                                !! likewise
       real(wp) :: damping(2) = 0               !! lost to nodal damping, likewise
       real(wp) :: transfer(2) = 0              !! lost in transfers, likewise
+      real(wp) :: seen(2) = 0                  !! lost by what nodes see, while cracks grow,
+                                               !! likewise
       real(wp) :: contact(2) = 0               !! lost in contact, likewise
       real(wp) :: kinetic_start = 0            !! at the start, all ranks
       real(wp) :: largest = 0                  !! largest energy so far, the measure of the error
-      real(wp) :: unseen_start = 0             !! what no node saw, and losses in transfers, when
+      real(wp) :: unseen_start = 0             !! what no node saw, and lost in transfers, when
                                                !! cracks began to grow, all ranks
    end type ledger_t
 
@@ -93,6 +95,7 @@ module xmpm_model
       type(flip_step_t) :: flip               !! FLIP's step beside that of PIC or XPIC
       real(wp) :: impulses = 0                !! sum of m dv.dv of the nodes, this rank [energy]
       real(wp) :: transfer_loss = 0           !! lost in transfers so far, this rank [energy]
+      real(wp) :: seen_loss = 0               !! the part of it that nodes saw, while cracks grow
       type(tally_t) :: tally                  !! of the last step, this rank
       type(ledger_t) :: ledger
       type(stage_clock_t) :: clock

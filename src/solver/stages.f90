@@ -9,8 +9,8 @@ module xmpm_stages
       impulse_energy, &
       blend_change, velocity_from_second, change_from_velocity, sharpen_rows
    use xmpm_boundary, only: apply_boundary, hold_boundary, region_set
-   use xmpm_transfer, only: tally_t, particles_to_grid, update_velocity, smooth_velocity, &
-      update_stress, advance_positions
+   use xmpm_transfer, only: tally_t, particles_to_grid, update_velocity, update_stress, &
+      advance_positions
    use xmpm_transfer_loss, only: note_flip, loss_of_transfer
    use xmpm_storage, only: lanes, c_m
    use xmpm_loads, only: apply_load, power_of_load, rows_of_bin, push_chunk
@@ -20,6 +20,7 @@ module xmpm_stages
    use xmpm_fracture, only: measure_front
    use xmpm_front_flags, only: flag_conditions
    use xmpm_face_forces, only: faces_meet, find_face_forces, part_faces
+   use xmpm_seen_loss, only: smooth, seen_loss, wants_seen_loss, look_interval
    use xmpm_meet, only: measure_contact, meet_bodies, meet_straining, meet_again
    use xmpm_model, only: model_t
    implicit none
@@ -107,12 +108,22 @@ contains
          call note_flip(m%particles, m%bodies%half, m%kernels, m%sided, m%grid, m%flip)
          m%impulses = impulse_energy(m%grid)
       end if
-      if (eta > 0) then
-         if (m%options%xpic) call smooth(m, f_velocity)
-         call blend_change(m%grid, eta, m%options%xpic)
-      end if
+      if (eta > 0) call blend(m, eta)
       call stop_stage(m%clock, stage_grid)
    end subroutine advance_nodes
+
+   !> The share of PIC or XPIC in the change of velocity, and what it takes from what nodes see.
+   subroutine blend(m, eta)
+      type(model_t), intent(inout) :: m
+      real(wp), intent(in) :: eta   !! share of the nodal velocity
+      real(wp), allocatable :: change(:, :)
+
+      if (wants_seen_loss(m)) change = m%grid%node(5:7, :)
+      if (m%options%xpic) call smooth(m, f_velocity)
+      call blend_change(m%grid, eta, m%options%xpic)
+      if (.not. allocated(change)) return
+      m%seen_loss = m%seen_loss + look_interval*seen_loss(m, eta, change)
+   end subroutine blend
 
    !> All body forces of now.
    pure function body_force_of(m) result(force)
@@ -241,17 +252,6 @@ contains
       end do
       m%boundaries(i)%rows = pack([(k, k=1, m%grid%n_rows)], near)
    end subroutine rows_around_set
-
-   !> Momentum of three smoothed fields in grid%second, for XPIC(2) and corrected inertia.
-   subroutine smooth(m, field)
-      type(model_t), intent(inout) :: m
-      integer, intent(in) :: field   !! first of the three
-
-      call smooth_velocity(m%particles, m%bodies, m%kernels, m%sided, 1, m%grid%blocks%n, field, &
-         m%grid)
-      call start_sum(m%halo, m%comm, m%grid%second, 1, 3)
-      call finish_sum(m%halo, m%grid%second, 1, 3)
-   end subroutine smooth
 
    !> Particle velocities (eq. 43); with `remap` also MUSL's second map, whose velocity then stands
    !> in fields 5:7.

@@ -294,7 +294,7 @@ contains
       type(results_t) :: results
       type(balance_t) :: balance
       type(error_t), allocatable :: error
-      real(wp) :: row(21)
+      real(wp) :: row(22)
 
       call begin(bar//'*OUTPUT particles=none every=0.25 history=0.125|'// &
          '*PROBE tip point=11.9 2 2|', 'table', deck, m, results)
@@ -302,7 +302,7 @@ contains
          abs(results%every - 0.25_wp) <= 0 .and. abs(results%history_every - 0.125_wp) <= 0)
       balance = balance_t(time=0.5_wp, step=7_i8, dt=0.1_wp, kinetic=1.0_wp, strain=2.0_wp, &
          external=3.0_wp, damping=4.0_wp, transfer=4.5_wp, fracture=4.6_wp, unresolved=4.7_wp, &
-         error=5.0_wp, relative_error=6.0_wp, fracture_error=6.5_wp, &
+         transfer_seen=4.8_wp, error=5.0_wp, relative_error=6.0_wp, fracture_error=6.5_wp, &
          linear=[7.0_wp, 8.0_wp, 9.0_wp], angular=[10.0_wp, 11.0_wp, 12.0_wp])
       call write_energy(results, m, balance)
       m%time = 0.75_wp
@@ -312,14 +312,15 @@ contains
       call check_no_error(suite, 'tables are closed', error)
       call wait_for_all(comm)
       call read_table(suite, 'table_energy', 'time,step,dt,kinetic,strain,external,damping,'// &
-         'transfer,plastic,contact,fracture,unresolved,balance_error,relative_error,'// &
-         'fracture_error,momentum_x,momentum_y,momentum_z,angular_x,angular_y,angular_z', &
+         'transfer,plastic,contact,fracture,unresolved,transfer_seen,balance_error,'// &
+         'relative_error,fracture_error,momentum_x,momentum_y,momentum_z,'// &
+         'angular_x,angular_y,angular_z', &
          '# units: ms,1,ms'// &
-         repeat(',g mm2/ms2', 10)//',1,1'//repeat(',g mm/ms', 3)//repeat(',g mm2/ms', 3), row)
+         repeat(',g mm2/ms2', 11)//',1,1'//repeat(',g mm/ms', 3)//repeat(',g mm2/ms', 3), row)
       ! 17 digits give every real back
       call check(suite, 'the row is the balance', all(abs(row - [0.5_wp, 7.0_wp, 0.1_wp, 1.0_wp, &
-         2.0_wp, 3.0_wp, 4.0_wp, 4.5_wp, 0.0_wp, 0.0_wp, 4.6_wp, 4.7_wp, 5.0_wp, 6.0_wp, 6.5_wp, &
-         7.0_wp, 8.0_wp, 9.0_wp, 10.0_wp, 11.0_wp, 12.0_wp]) <= 0))
+         2.0_wp, 3.0_wp, 4.0_wp, 4.5_wp, 0.0_wp, 0.0_wp, 4.6_wp, 4.7_wp, 4.8_wp, 5.0_wp, 6.0_wp, &
+         6.5_wp, 7.0_wp, 8.0_wp, 9.0_wp, 10.0_wp, 11.0_wp, 12.0_wp]) <= 0))
       call read_table(suite, 'table_probe', 'time,step,tip_x,tip_y,tip_z', &
          '# units: ms,1,mm,mm,mm', row(:5))
       call check(suite, 'the row is what the probe sees', &

@@ -11,6 +11,8 @@ program test_transfer_loss
    use xmpm_loads, only: apply_load
    use xmpm_storage, only: bin_of_chunk, c_x, c_m, c_vol
    use xmpm_stages, only: map_to_grid, advance_nodes, map_to_particles, finish_work
+   use xmpm_resolved, only: resolve_fields
+   use xmpm_seen_loss, only: seen_loss
    use xmpm_model, only: model_t
    use small_model, only: make_model
    use testing, only: suite_t, check, check_close, check_no_error, finish
@@ -44,6 +46,8 @@ contains
       call test_step(shape//', PIC, crack', shape, crack//'*TIME end=1|*DAMPING pic=20|', 0.05_wp)
       call test_step(shape//', XPIC', shape, '*TIME end=1 transfer=xpic|', 0.05_wp)
       call test_step(shape//', XPIC, crack', shape, crack//'*TIME end=1 transfer=xpic|', 0.05_wp)
+      call test_seen(shape//', PIC, crack', shape, crack//'*TIME end=1|*DAMPING pic=10|', 0.2_wp)
+      call test_seen(shape//', XPIC, crack', shape, crack//'*TIME end=1 transfer=xpic|', 1.0_wp)
       call test_usl(shape//', USL', shape, crack//'*TIME end=1 scheme=usl|')
    end subroutine try_shape
 
@@ -148,6 +152,56 @@ contains
          call check(suite, head//': nothing is lost', .not. abs(sums(3)) > 0)
       end if
    end subroutine test_step
+
+   !> What the transfer takes from the velocities that nodes see is what the kinetic energy of the
+   !> resolved velocities loses, where no force acts.
+   subroutine test_seen(head, shape, rest, eta)
+      character(len=*), intent(in) :: head, shape, rest
+      real(wp), intent(in) :: eta   !! share of the nodal velocity in a step
+      type(model_t) :: m
+      real(wp) :: sums(4), part
+
+      call make_block(shape, rest, m)
+      m%particles%q(:, 9:14, :) = 0
+      m%particles%q(:, c_vol, :) = m%particles%q(:, c_m, :)   ! volumes weigh resolved fields
+      call clear_rows(m%grid)
+      deallocate (m%loads)
+      allocate (m%loads(0))
+      sums(1) = kinetic(m)
+      sums(2) = resolved_energy(m)
+      call map_to_grid(m)
+      call advance_nodes(m, dt)
+      part = seen_loss(m, eta, 0*m%grid%node(5:7, :))
+      call map_to_particles(m, remap=.true.)
+      sums(3:4) = [m%transfer_loss, part]
+      sums(1) = sums(1) - kinetic(m) - sums(3)
+      sums(2) = sums(2) - resolved_energy(m) - sums(4)
+      call sum_all(comm, sums)
+      call check_close(suite, head//': the loss is that of the particles', sums(1)/sums(3), &
+         0.0_wp, 1e-11_wp, 0.0_wp)
+      ! differences of sums some hundred times as large
+      call check_close(suite, head//': the part that nodes see is that of what they resolve', &
+         sums(2)/sums(4), 0.0_wp, 1e-10_wp, 0.0_wp)
+      call check(suite, head//': nodes see a part of it', sums(4) > 0 .and. sums(4) < sums(3))
+   end subroutine test_seen
+
+   !> Kinetic energy of the velocities that the grid resolves, of this rank. Collective.
+   function resolved_energy(m) result(energy)
+      type(model_t), intent(inout) :: m
+      real(wp) :: energy
+      real(wp), allocatable :: v(:, :, :)
+      integer, allocatable :: chunks(:)
+      integer :: c, i
+
+      chunks = pack([(c, c=1, m%particles%n_chunks)], m%particles%count(:m%particles%n_chunks) > 0)
+      v = m%particles%q(:, 4:6, chunks)
+      call resolve_fields(chunks, m%comm, m%halo, m%grid, m%particles, m%bodies, m%kernels, &
+         m%sided, v)
+      energy = 0
+      do i = 1, 3
+         energy = energy + 0.5_wp*sum(m%particles%q(:, c_m, chunks)*v(:, i, :)**2)
+      end do
+   end function resolved_energy
 
    !> A step of USL: the loss is that of the nodes' own velocity against the second map's.
    subroutine test_usl(head, shape, rest)
