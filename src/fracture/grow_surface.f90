@@ -40,6 +40,7 @@ module xmpm_grow_surface
       real(wp), allocatable :: advance(:, :)   !! (3,nn) way of each node [length]
       logical, allocatable :: stays(:)         !! (nn) nodes that do not go
       logical, allocatable :: turns(:)         !! (chains) open ends are not led out
+      logical, allocatable :: through(:)       !! (chains) the rest ahead is cut at once
       integer, allocatable :: partner(:)       !! (nn) chain that a node has met
       integer, allocatable :: near(:)          !! (nn) chain that it is about to meet
    end type plan_t
@@ -99,9 +100,9 @@ contains
       class(material_test_t), intent(in) :: material
       type(plan_t), intent(out) :: plan
       integer :: chain
-      logical :: ready
 
       plan%advance = advance
+      allocate (plan%through(front%chain_count), source=.false.)
       allocate (plan%partner(front%node_count), plan%near(front%node_count))
       call find_meetings(front, limits%meeting, plan%partner)
       call find_meetings(front, about*limits%meeting, plan%near)
@@ -110,7 +111,7 @@ contains
             if (any(waits(first:last)) .or. any(plan%partner(first:last) > 0)) cycle
             if (.not. any(norm2(advance(:, first:last), 1) > limits%least)) cycle
          end associate
-         call way_through(front, chain, limits, material, plan%advance, ready)
+         call way_through(front, chain, limits, material, plan%advance, plan%through(chain))
       end do
       plan%stays = waits .or. plan%partner > 0 .or. norm2(plan%advance, 1) < limits%least
       allocate (plan%turns(front%chain_count), source=.false.)
@@ -172,7 +173,8 @@ contains
       call strip_between(front%vertex(first:last), line%vertex, line%closed, draft%x, &
          front%e2(:, first:last), tri)
       call add_triangles(tri, draft)
-      call add_pairs(line%vertex, line%closed, draft)
+      ! Where the rest was cut at once no front is left, also if a corner came to lie inside again.
+      if (.not. plan%through(chain)) call add_pairs(line%vertex, line%closed, draft)
    end subroutine grow_chain
 
    !> Number the new nodes of a line.

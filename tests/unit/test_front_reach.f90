@@ -54,6 +54,7 @@ program test_front_reach
    call ends_follow_a_wall()
    call ends_re_enter()
    call rest_is_cut_at_once()
+   call rest_in_a_corner_is_cut_at_once()
    call thin_plate_is_no_rest()
    call fault_outside_is_held()
    call fronts_meet_beside_each_other()
@@ -176,6 +177,42 @@ contains
       call check(suite, 'one and a half cells are cut at once', maxval(surface%x(1, :)) > 11.0_wp &
          .and. .not. any(front%x(1, :) > 0))
    end subroutine rest_is_cut_at_once
+
+   !> The same where a front that has become uneven runs into a corner of the body: once little is
+   !> left ahead of all its nodes, it is gone with that growth, and no piece of it stays behind.
+   subroutine rest_in_a_corner_is_cut_at_once()
+      type(wedge_t) :: plate
+      real(wp), parameter :: d = sqrt(0.5_wp), along(3) = [d, d, 0.0_wp], across(3) = [-d, d, 0.0_wp]
+      real(wp), allocatable :: advance(:, :)
+      real(wp) :: s, last
+      integer :: i, k, n, pieces
+
+      plate%end = 11
+      pieces = 0
+      do i = 1, 60
+         call start([12.0_wp, 9.1_wp], [11.0_wp, 4.3_wp, 0.0_wp] - 9.0_wp*along, along, across, &
+            plate)
+         do n = 1, 12
+            last = 0
+            advance = 0*front%x
+            do k = 1, front%node_count
+               if (dot_product(front%e1(:, k), along) < 0.1_wp) cycle
+               if (plate%inside(front%x(:, k))) last = max(last, &
+                  dot_product([11.0_wp, 4.3_wp, 0.0_wp] - front%x(:, k), along))
+               s = dot_product(front%x(:, k) - [11.0_wp, 4.3_wp, 0.0_wp], across)
+               advance(:, k) = (0.35_wp + 0.15_wp*sin(0.7_wp*real(i, wp)*s + real(i, wp))) &
+                  *front%e1(:, k)
+            end do
+            if (.not. any(norm2(advance, 1) > 0)) exit
+            ! three of the sixty left one, 0.2 to 0.4 cells from the corner
+            if (last < 0.4_wp) pieces = pieces + 1
+            call grow_by(advance, plate)
+            call check_no_error(suite, 'a front grows in a corner', error)
+            if (allocated(error)) exit
+         end do
+      end do
+      call check(suite, 'no piece of a front stays in a corner', pieces == 0)
+   end subroutine rest_in_a_corner_is_cut_at_once
 
    function ahead_at_far_side() result(advance)
       real(wp), allocatable :: advance(:, :)
