@@ -53,7 +53,7 @@ module xmpm_growth
       real(wp), allocatable :: dilatational(:)        !! (nn) [length/time]
       real(wp), allocatable :: speed(:)               !! (nn) in the last step [length/time]
       logical, allocatable :: outside(:)              !! (nn) node without material around
-      logical, allocatable :: waits(:)                !! (nn) node that another crack holds
+      logical, allocatable :: waits(:)                !! (nn) node that a crack holds
       real(wp) :: energy = 0.0_wp                     !! integral of G dA so far [energy]
       real(wp) :: area = 0.0_wp                       !! area gone so far [length**2]
       integer :: increments = 0                       !! re-meshings so far

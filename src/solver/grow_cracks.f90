@@ -11,6 +11,7 @@ module xmpm_grow_cracks
    use xmpm_fracture, only: start_traces, trace_reach
    use xmpm_front_values, only: flag_leaves
    use xmpm_grow_surface, only: grown_t, grow_surface
+   use xmpm_own_surface, only: find_own_surface
    use xmpm_occupancy, only: occupancy_t, look_around, body_at
    use xmpm_growth, only: advance_fronts, is_due, growth_vectors, renew_growth, toughness_at, &
       take_intensities
@@ -204,37 +205,61 @@ contains
          m%bodies, m%particles)
    end subroutine trace_ahead
 
-   !> Nodes that come within a cell of another crack stay where they are.
+   !> Nodes that come within a cell of another crack, or of another part of their own, stay where
+   !> they are.
    subroutine find_obstacles(m, g, advance)
       type(model_t), intent(inout) :: m
       integer, intent(in) :: g
       real(wp), intent(in) :: advance(:, :)
-      type(nearest_t) :: before, after
-      real(wp) :: clear
+      logical :: own(size(advance, 2)), knew
       integer :: i, k, c
-      logical :: knew
 
       c = m%growth(g)%crack
       knew = any(m%growth(g)%waits)
-      do i = 1, size(advance, 2)
-         m%growth(g)%waits(i) = .false.
-         if (.not. norm2(advance(:, i)) > 0) cycle
-         do k = 1, size(m%cracks)
-            if (k == c) cycle
-            associate (other => m%cracks(k), x => m%cracks(c)%front%x(:, i))
-               clear = m%grid%lattice%size
-               call nearest_on_surface(other%index, other%surface, x + advance(:, i), clear, after)
-               if (after%triangle == 0) cycle
-               call nearest_on_surface(other%index, other%surface, x, 3*clear, before)
-               if (before%triangle > 0 .and. before%distance <= after%distance) cycle
-               m%growth(g)%waits(i) = .true.
-               if (.not. knew) call add_news(m, g, 'stopped at '//to_text(x)//': it would grow '// &
-                  "into the crack '"//other%name//"', and cracks that grow do not cross")
-               knew = .true.
-            end associate
-         end do
+      call find_own_surface(m%cracks(c)%surface, m%cracks(c)%front, advance, &
+         m%grid%lattice%size, own)
+      do i = 1, size(own)
+         k = 0
+         if (norm2(advance(:, i)) > 0) k = crack_ahead(m, c, m%cracks(c)%front%x(:, i), &
+            advance(:, i))
+         if (own(i)) k = c
+         m%growth(g)%waits(i) = k > 0
+         if (knew .or. k == 0) cycle
+         call add_news(m, g, 'stopped at '//to_text(m%cracks(c)%front%x(:, i))// &
+            ': it would grow into '//obstacle(m, c, k))
+         knew = .true.
       end do
    end subroutine find_obstacles
+
+   !> The last crack but one's own of which a point comes within a cell, 0 for none.
+   function crack_ahead(m, c, x, way) result(k)
+      type(model_t), intent(in) :: m
+      integer, intent(in) :: c               !! crack that grows
+      real(wp), intent(in) :: x(3), way(3)   !! of a node [length]
+      integer :: k, i
+      type(nearest_t) :: before, after
+
+      k = 0
+      do i = 1, size(m%cracks)
+         if (i == c) cycle
+         associate (other => m%cracks(i), clear => m%grid%lattice%size)
+            call nearest_on_surface(other%index, other%surface, x + way, clear, after)
+            if (after%triangle == 0) cycle
+            call nearest_on_surface(other%index, other%surface, x, 3*clear, before)
+            if (before%triangle > 0 .and. before%distance <= after%distance) cycle
+            k = i
+         end associate
+      end do
+   end function crack_ahead
+
+   pure function obstacle(m, c, k) result(text)
+      type(model_t), intent(in) :: m
+      integer, intent(in) :: c, k   !! crack that grows and that which is in its way
+      character(len=:), allocatable :: text
+
+      text = "the crack '"//m%cracks(k)%name//"', and cracks that grow do not cross"
+      if (k == c) text = 'its own surface; the rest of its front goes on'
+   end function obstacle
 
    !> Where the new nodes are: outside or in which body, with its toughness. Collective.
    subroutine know_nodes(m, g, error)

@@ -182,7 +182,8 @@ contains
    !> left ahead of all its nodes, it is gone with that growth, and no piece of it stays behind.
    subroutine rest_in_a_corner_is_cut_at_once()
       type(wedge_t) :: plate
-      real(wp), parameter :: d = sqrt(0.5_wp), along(3) = [d, d, 0.0_wp], across(3) = [-d, d, 0.0_wp]
+      real(wp), parameter :: d = sqrt(0.5_wp), along(3) = [d, d, 0.0_wp], &
+         across(3) = [-d, d, 0.0_wp]
       real(wp), allocatable :: advance(:, :)
       real(wp) :: s, last
       integer :: i, k, n, pieces
