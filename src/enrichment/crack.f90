@@ -35,6 +35,8 @@ module xmpm_crack
 
    real(wp), parameter :: drift = 0.02_wp  !! relative motion after which level sets are renewed
                                            !! [cells]
+   real(wp), parameter :: wide = 0.1_wp    !! faces so far apart have left each other's nodes
+                                           !! [cells]
    real(wp), parameter :: close = 0.02_wp  !! particles so near to the surface keep their side
                                            !! [cells]
    real(wp), parameter :: tie = 1e-9_wp    !! particles so little above lie in the surface, which is
@@ -386,7 +388,7 @@ contains
       type(grid_t), intent(in) :: grid
       type(sided_t), intent(in) :: sided
       real(wp), intent(in) :: dt               !! [time]
-      real(wp) :: x(3), plus(3), minus(3), g
+      real(wp) :: x(3), n(3), plus(3), minus(3), g
       integer :: v, b, bin(3)
 
       do v = 1, size(crack%mine)
@@ -398,7 +400,10 @@ contains
             crack%stale = .true.
             cycle
          end if
-         call face_velocities(grid, sided, number, x, bin, b, plus, minus, crack%material(v))
+         n = crack%surface%vertex_normal(:, v)
+         if (dot_product(crack%surface%up(:, v) - crack%surface%um(:, v), n) &
+             < wide*grid%lattice%size) n = 0
+         call face_velocities(grid, sided, number, x, n, bin, b, plus, minus, crack%material(v))
          g = 0.5_wp*(1 + crack%weight(v))
          crack%surface%up(:, v) = crack%surface%up(:, v) + dt*(g*plus + (1 - g)*minus)
          crack%surface%um(:, v) = crack%surface%um(:, v) + dt*(g*minus + (1 - g)*plus)
@@ -407,23 +412,26 @@ contains
       end do
    end subroutine advance_crack
 
-   !> Velocity of the two sides at a point: nodes without mass on a side do not count.
-   subroutine face_velocities(grid, sided, number, x, bin, b, plus, minus, material)
+   !> Velocity of the two sides at a point: nodes without mass on a side do not count, and where
+   !> the faces have come apart, neither do those of the other face.
+   subroutine face_velocities(grid, sided, number, x, normal, bin, b, plus, minus, material)
       type(grid_t), intent(in) :: grid
       type(sided_t), intent(in) :: sided
       integer, intent(in) :: number, bin(3), b
       real(wp), intent(in) :: x(3)
+      real(wp), intent(in) :: normal(3)   !! where the faces have come apart, else 0
       real(wp), intent(out) :: plus(3), minus(3)
       logical, intent(out) :: material
-      real(wp) :: w(grid%lattice%reach**3), t(3), total(2)
+      real(wp) :: w(grid%lattice%reach**3, 2), t(3), total(2)
       integer :: rows(grid%lattice%reach**3, 2), s, k
 
       t = (x - bin_corner(grid%lattice, bin))/grid%lattice%size
       if (grid%lattice%shape == gimp_shape) then
-         w = weights_gimp(t - 0.5_wp, 0.25_wp)
+         w(:, 1) = weights_gimp(t - 0.5_wp, 0.25_wp)
       else
-         w = weights_linear(t)
+         w(:, 1) = weights_linear(t)
       end if
+      w(:, 2) = w(:, 1)
       rows(:, 1) = rows_of_bin(grid, bins_per_block*(b - 1) + local_bin(bin), &
          stencil_offsets(grid%lattice))
       rows(:, 2) = rows(:, 1)
@@ -436,12 +444,33 @@ contains
             rows(:, 2) = sided%rows(:, 2**(k - 1), s)
          end do
       end if
-      call weighted_velocity(grid, rows(:, 1), w, minus, total(1))
-      call weighted_velocity(grid, rows(:, 2), w, plus, total(2))
+      if (any(abs(normal) > 0)) call part_nodes(grid%lattice, t, normal, rows, w)
+      call weighted_velocity(grid, rows(:, 1), w(:, 1), minus, total(1))
+      call weighted_velocity(grid, rows(:, 2), w(:, 2), plus, total(2))
       material = all(total > 1e-6_wp)
       if (total(1) <= 1e-6_wp) minus = plus
       if (total(2) <= 1e-6_wp) plus = minus
    end subroutine face_velocities
+
+   !> A node that is not split has mass of one side alone once the faces have come apart: that on
+   !> which it lies.
+   pure subroutine part_nodes(lattice, t, normal, rows, w)
+      type(lattice_t), intent(in) :: lattice
+      real(wp), intent(in) :: t(3)          !! place in the bin [cells]
+      real(wp), intent(in) :: normal(3)
+      integer, intent(in) :: rows(:, :)     !! (nodes,2) of the minus and the plus side
+      real(wp), intent(inout) :: w(:, :)    !! (nodes,2) weights
+      integer :: i, k, n, other
+      real(wp) :: node(3)
+
+      n = lattice%reach
+      do i = 1, size(rows, 1)
+         if (rows(i, 1) /= rows(i, 2)) cycle
+         node = [(real(mod((i - 1)/n**k, n), wp), k=0, 2)] + 0.5_wp*real(lattice%low, wp) - t
+         other = merge(1, 2, dot_product(node, normal) > 0)
+         w(i, other) = 0
+      end do
+   end subroutine part_nodes
 
    pure subroutine weighted_velocity(grid, rows, w, v, total)
       type(grid_t), intent(in) :: grid

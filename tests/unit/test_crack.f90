@@ -18,6 +18,8 @@ program test_crack
    call start_parallel(comm)
    suite%name = 'crack'
    call places_wait_for_geometry()
+   call faces_part_far('linear')
+   call faces_part_far('gimp')
    call finish(suite)
    call stop_parallel(comm, 0)
 
@@ -74,4 +76,43 @@ contains
       ! rounding over 60 steps of a flight without stress
       call check_close(suite, 'the surface flew with the body', off, 0.0_wp, 1e-9_wp, 0.0_wp)
    end subroutine places_wait_for_geometry
+
+   !> Halves that fly apart by one and a half cells: each face goes with its own half, also when it
+   !> has left the cells in which nodes are split.
+   subroutine faces_part_far(shape)
+      character(len=*), intent(in) :: shape
+      type(deck_t) :: deck
+      type(model_t) :: m
+      type(error_t), allocatable :: error
+      real(wp) :: off
+      integer :: i, v
+
+      call make_model(comm, '*JOB x|*UNITS length=mm mass=g time=ms|*GRID size=1 shape='//shape// &
+         '|*MATERIAL a law=elastic density=1e-3 young=1 poisson=0.2|'// &
+         '*BODY a material=a box=0 0 0 6 6 2.5|'// &
+         '*BODY b material=a box=0 0 2.5 6 6 5 velocity=0 0 10|'// &
+         '*CRACK c rectangle centre=3 3 2.5 along=1 0 0 across=0 1 0 width=8 depth=8|'// &
+         '*TIME end=1 step=5e-3', deck, m, error)
+      call check_no_error(suite, shape//': two halves are set up', error)
+      if (allocated(error)) return
+      do i = 1, 30
+         call choose_step(m, 1.0_wp, error)
+         call m%take_step(m, m%dt)
+         call settle(m, error)
+         if (allocated(error)) exit
+      end do
+      call check_no_error(suite, shape//': they fly', error)
+      off = 0
+      associate (s => m%cracks(1)%surface)
+         do v = 1, s%vertex_count
+            if (.not. m%cracks(1)%mine(v)) cycle
+            if (any(s%start(1:2, v) < 1 .or. s%start(1:2, v) > 5)) cycle
+            off = max(off, norm2(s%up(:, v) - [0.0_wp, 0.0_wp, 1.5_wp]), norm2(s%um(:, v)))
+         end do
+      end associate
+      call max_all(comm, off)
+      ! rounding over 30 steps without stress
+      call check_close(suite, shape//': each face has gone with its half', off, 0.0_wp, 1e-9_wp, &
+         0.0_wp)
+   end subroutine faces_part_far
 end program test_crack
