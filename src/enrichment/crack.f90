@@ -4,16 +4,13 @@ module xmpm_crack
    use xmpm_text, only: to_text
    use xmpm_error, only: error_t, raise, code_numerics
    use xmpm_communicator, only: comm_t, sum_all, max_all
-   use xmpm_lattice, only: lattice_t, bin_of, bin_corner, block_of, local_bin, gimp_shape, &
-      stencil_offsets, bins_per_block
+   use xmpm_lattice, only: lattice_t, bin_of, bin_corner, block_of, local_bin, gimp_shape
    use xmpm_blocks, only: local_block, owner_of
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, attach, bin_of_chunk, n_near, near_crack, near_side, &
       near_psi, near_phi, near_jump, near_slope, near_ahead, near_place, c_x
-   use xmpm_linear_kernels, only: weights_linear
-   use xmpm_gimp_kernels, only: weights_gimp
    use xmpm_sided, only: sided_t
-   use xmpm_loads, only: rows_of_bin
+   use xmpm_face_velocity, only: face_velocities
    use xmpm_surface, only: surface_t, refresh_geometry, fill_void
    use xmpm_surface_index, only: surface_index_t, nearest_t, build_index, refresh_index, &
       nearest_on_surface
@@ -411,83 +408,6 @@ contains
          if (local_block(grid%blocks, block_of(bin)) == 0) crack%stale = .true.
       end do
    end subroutine advance_crack
-
-   !> Velocity of the two sides at a point: nodes without mass on a side do not count, and where
-   !> the faces have come apart, neither do those of the other face.
-   subroutine face_velocities(grid, sided, number, x, normal, bin, b, plus, minus, material)
-      type(grid_t), intent(in) :: grid
-      type(sided_t), intent(in) :: sided
-      integer, intent(in) :: number, bin(3), b
-      real(wp), intent(in) :: x(3)
-      real(wp), intent(in) :: normal(3)   !! where the faces have come apart, else 0
-      real(wp), intent(out) :: plus(3), minus(3)
-      logical, intent(out) :: material
-      real(wp) :: w(grid%lattice%reach**3, 2), t(3), total(2)
-      integer :: rows(grid%lattice%reach**3, 2), s, k
-
-      t = (x - bin_corner(grid%lattice, bin))/grid%lattice%size
-      if (grid%lattice%shape == gimp_shape) then
-         w(:, 1) = weights_gimp(t - 0.5_wp, 0.25_wp)
-      else
-         w(:, 1) = weights_linear(t)
-      end if
-      w(:, 2) = w(:, 1)
-      rows(:, 1) = rows_of_bin(grid, bins_per_block*(b - 1) + local_bin(bin), &
-         stencil_offsets(grid%lattice))
-      rows(:, 2) = rows(:, 1)
-      s = 0
-      if (sided%n > 0) s = sided%bin(local_bin(bin), b)
-      if (s > 0) then
-         do k = 1, sided%n_cracks(s)
-            if (sided%crack(k, s) /= number) cycle
-            rows(:, 1) = sided%rows(:, 0, s)
-            rows(:, 2) = sided%rows(:, 2**(k - 1), s)
-         end do
-      end if
-      if (any(abs(normal) > 0)) call part_nodes(grid%lattice, t, normal, rows, w)
-      call weighted_velocity(grid, rows(:, 1), w(:, 1), minus, total(1))
-      call weighted_velocity(grid, rows(:, 2), w(:, 2), plus, total(2))
-      material = all(total > 1e-6_wp)
-      if (total(1) <= 1e-6_wp) minus = plus
-      if (total(2) <= 1e-6_wp) plus = minus
-   end subroutine face_velocities
-
-   !> A node that is not split has mass of one side alone once the faces have come apart: that on
-   !> which it lies.
-   pure subroutine part_nodes(lattice, t, normal, rows, w)
-      type(lattice_t), intent(in) :: lattice
-      real(wp), intent(in) :: t(3)          !! place in the bin [cells]
-      real(wp), intent(in) :: normal(3)
-      integer, intent(in) :: rows(:, :)     !! (nodes,2) of the minus and the plus side
-      real(wp), intent(inout) :: w(:, :)    !! (nodes,2) weights
-      integer :: i, k, n, other
-      real(wp) :: node(3)
-
-      n = lattice%reach
-      do i = 1, size(rows, 1)
-         if (rows(i, 1) /= rows(i, 2)) cycle
-         node = [(real(mod((i - 1)/n**k, n), wp), k=0, 2)] + 0.5_wp*real(lattice%low, wp) - t
-         other = merge(1, 2, dot_product(node, normal) > 0)
-         w(i, other) = 0
-      end do
-   end subroutine part_nodes
-
-   pure subroutine weighted_velocity(grid, rows, w, v, total)
-      type(grid_t), intent(in) :: grid
-      integer, intent(in) :: rows(:)
-      real(wp), intent(in) :: w(:)
-      real(wp), intent(out) :: v(3), total
-      integer :: i
-
-      v = 0
-      total = 0
-      do i = 1, size(rows)
-         if (.not. grid%node(1, rows(i)) > 0) cycle
-         total = total + w(i)
-         v = v + w(i)*grid%node(5:7, rows(i))
-      end do
-      if (total > 0) v = v/total
-   end subroutine weighted_velocity
 
    !> Bring the vertices of all ranks together and, if it is time to, let those without material
    !> follow and renew geometry and H. Collective.

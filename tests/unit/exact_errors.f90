@@ -2,11 +2,13 @@
 !> lattice of the crack: for tests and for the verification.
 module exact_errors
    use xmpm_kinds, only: wp, pi
+   use xmpm_surface, only: refresh_geometry
+   use xmpm_front, only: refresh_front
    use xmpm_crack, only: crack_t
-   use xmpm_samples, only: sample_t
+   use xmpm_samples, only: sample_t, place_sample
    use xmpm_front_points, only: front_points_t, list_points, window_length
    use xmpm_domain_integral, only: domain_sums_t, domain_shape_t, sum_domains, clear_sums, &
-      plateau_area
+      plateau_area, full
    use xmpm_velocity_functions, only: elastic_constants_t, elastic_constants, velocity_functions, &
       release_rate, fastest_front
    use xmpm_material_drift, only: drift_sums, drift_of
@@ -44,10 +46,13 @@ contains
       shape%reach = shape%half_width + radius(3)
    end function shape_of
 
-   !> Errors along a penny of radius a under tension.
-   subroutine penny_errors(a, radius, e)
+   !> Errors along a penny of radius a under tension, in a body that may have turned since.
+   subroutine penny_errors(a, radius, e, turn, astray)
       real(wp), intent(in) :: a, radius(3)
       type(errors_t), intent(out) :: e
+      real(wp), intent(in), optional :: turn(3, 3)     !! rotation of body, crack and field
+      real(wp), intent(in), optional :: astray(3, 3)   !! rotation by which the turn of the front's
+                                                       !! frame is off
       type(crack_t) :: crack
       type(front_points_t) :: points
       type(domain_shape_t) :: shape
@@ -67,6 +72,15 @@ contains
       do i = 1, size(samples)
          call give_penny(samples(i), centre, a, 1.0_wp, lambda, mu)
       end do
+      if (present(turn)) then
+         call turn_body(turn, radius(3), crack, samples)
+         call list_points(crack, points)
+      end if
+      if (present(astray)) then
+         do i = 1, points%n
+            points%turn(:, :, i) = matmul(astray, points%turn(:, :, i))
+         end do
+      end if
       call clear_sums(sums, 3, points%n)
       allocate (still(points%n), drift(3, points%n), source=0.0_wp)
       call sum_domains(samples, crack%front, points, shape, still, drift, sums)
@@ -74,6 +88,32 @@ contains
          i=1, points%n)]
       call compare_penny(a, shape, sums, length, e)
    end subroutine penny_errors
+
+   !> Turn a crack and the particles around it about the origin, with all that they carry.
+   subroutine turn_body(turn, reach, crack, samples)
+      real(wp), intent(in) :: turn(3, 3), reach
+      type(crack_t), intent(inout) :: crack
+      type(sample_t), intent(inout) :: samples(:)
+      real(wp) :: stress(3, 3)
+      logical :: inside
+      integer :: i
+
+      crack%surface%up = matmul(turn, crack%surface%start) - crack%surface%start
+      crack%surface%um = crack%surface%up
+      call refresh_geometry(crack%surface)
+      call refresh_front(crack%surface, crack%front)
+      do i = 1, size(samples)
+         associate (s => samples(i))
+            s%x = matmul(turn, s%x)
+            call place_sample(crack%front, reach, s, inside)
+            stress = matmul(turn, matmul(full(s%stress), transpose(turn)))
+            s%stress = [stress(1, 1), stress(2, 2), stress(3, 3), stress(1, 2), stress(2, 3), &
+               stress(1, 3)]
+            s%back = matmul(s%back, transpose(turn))
+            s%pull = matmul(turn, s%pull)
+         end associate
+      end do
+   end subroutine turn_body
 
    !> Errors of sums over domains at a penny under a unit tension.
    subroutine compare_penny(a, shape, sums, length, e)
