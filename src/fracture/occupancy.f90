@@ -13,6 +13,8 @@ module xmpm_occupancy
 
    public :: occupancy_t, look_around, body_at
 
+   real(wp), parameter :: tie = 1e-6_wp   !! a point so near to a bin is in it [cells]
+
    !> Bins with their bodies; what was not looked at counts as empty.
    type, extends(material_test_t) :: occupancy_t
       type(lattice_t) :: lattice
@@ -103,12 +105,22 @@ contains
       is = body_at(material, x) > 0
    end function inside_bin
 
-   !> Body at a point, 0 where there is no material.
+   !> Body at a point, 0 where there is no material. A point between bins belongs to all of them:
+   !> bodies end there more often than not, and rounding must not decide.
    pure function body_at(occupancy, x) result(body)
       class(occupancy_t), intent(in) :: occupancy
       real(wp), intent(in) :: x(3)   !! [length]
-      integer :: body
+      integer :: body, a, b, c, low(3), high(3)
 
-      body = value_of(occupancy%body, block_key(bin_of(occupancy%lattice, x)), 0)
+      low = bin_of(occupancy%lattice, x - tie*occupancy%lattice%size)
+      high = bin_of(occupancy%lattice, x + tie*occupancy%lattice%size)
+      body = 0
+      do c = low(3), high(3)
+         do b = low(2), high(2)
+            do a = low(1), high(1)
+               body = max(body, value_of(occupancy%body, block_key([a, b, c]), 0))
+            end do
+         end do
+      end do
    end function body_at
 end module xmpm_occupancy
