@@ -36,6 +36,7 @@ module xmpm_crack
                                            !! [cells]
    real(wp), parameter :: close = 0.02_wp  !! particles so near to the surface keep their side
                                            !! [cells]
+   real(wp), parameter :: touching = 1e-6_wp   !! a vertex so near to a bin touches it [cells]
    real(wp), parameter :: tie = 1e-9_wp    !! particles so little above lie in the surface, which is
                                            !! below [cells]
 
@@ -98,7 +99,7 @@ contains
       if (.not. allocated(crack%mine)) allocate (crack%mine(crack%surface%vertex_count))
       do v = 1, size(crack%mine)
          crack%mine(v) = owner_of(grid%blocks, &
-            block_of(bin_of(grid%lattice, place_of(crack%surface, v)))) == rank
+            block_of(bin_of_vertex(grid, place_of(crack%surface, v)))) == rank
       end do
       crack%stale = .false.
    end subroutine take_vertices
@@ -111,6 +112,22 @@ contains
 
       x = surface%start(:, v) + 0.5_wp*(surface%up(:, v) + surface%um(:, v))
    end function place_of
+
+   !> Bin whose nodes move a vertex: the one that it is in or, where no block has that, one that it
+   !> touches. Vertices on the surface of a body are not left to rounding so.
+   pure function bin_of_vertex(grid, x) result(bin)
+      type(grid_t), intent(in) :: grid
+      real(wp), intent(in) :: x(3)   !! [length]
+      integer :: bin(3), i
+
+      bin = bin_of(grid%lattice, x)
+      do i = 0, 26
+         if (owner_of(grid%blocks, block_of(bin)) >= 0) return
+         bin = bin_of(grid%lattice, x + touching*grid%lattice%size &
+            *real([mod(i, 3), mod(i/3, 3), i/9] - 1, wp))
+      end do
+      bin = bin_of(grid%lattice, x)
+   end function bin_of_vertex
 
    !> H at the vertices, from their distance to the front.
    subroutine weigh_vertices(crack, h)
@@ -391,7 +408,7 @@ contains
       do v = 1, size(crack%mine)
          if (.not. crack%mine(v)) cycle
          x = place_of(crack%surface, v)
-         bin = bin_of(grid%lattice, x)
+         bin = bin_of_vertex(grid, x)
          b = local_block(grid%blocks, block_of(bin))
          if (b == 0) then
             crack%stale = .true.
@@ -404,7 +421,7 @@ contains
          g = 0.5_wp*(1 + crack%weight(v))
          crack%surface%up(:, v) = crack%surface%up(:, v) + dt*(g*plus + (1 - g)*minus)
          crack%surface%um(:, v) = crack%surface%um(:, v) + dt*(g*minus + (1 - g)*plus)
-         bin = bin_of(grid%lattice, place_of(crack%surface, v))
+         bin = bin_of_vertex(grid, place_of(crack%surface, v))
          if (local_block(grid%blocks, block_of(bin)) == 0) crack%stale = .true.
       end do
    end subroutine advance_crack
