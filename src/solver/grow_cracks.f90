@@ -10,6 +10,7 @@ module xmpm_grow_cracks
    use xmpm_crack, only: gather_crack, find_near, advance_ramp, replace_surface
    use xmpm_fracture, only: start_traces, trace_reach
    use xmpm_front_values, only: flag_leaves
+   use xmpm_front_average, only: average_along
    use xmpm_grow_surface, only: grown_t, grow_surface
    use xmpm_own_surface, only: find_own_surface
    use xmpm_occupancy, only: occupancy_t, look_around, body_at
@@ -48,24 +49,28 @@ contains
       end do
    end subroutine judge_fronts
 
-   !> Give the values of one crack to its growth; a node without a domain of its own has those of
-   !> the nearest node that has one.
+   !> Give the values of one crack to its growth, K averaged over neighbouring nodes; a node without
+   !> a domain of its own has those of the nearest node that has one.
    subroutine take_values(m, g, which)
       type(model_t), intent(inout) :: m
       integer, intent(in) :: g       !! growth
       integer, intent(in) :: which   !! place among the cracks with fracture parameters
       real(wp) :: k(3, m%fracture%values(which)%points%n), rate(m%fracture%values(which)%points%n)
+      real(wp) :: averaged(3, m%fracture%values(which)%points%n)
+      logical :: known(m%fracture%values(which)%points%n)
       integer :: i, from
 
       associate (values => m%fracture%values(which))
+         known = iand(values%flags, flag_leaves) == 0
+         averaged = average_along(m%cracks(m%growth(g)%crack)%front, known, values%k)
          do i = 1, values%points%n
-            from = nearest_known(values%points%x, iand(values%flags, flag_leaves) == 0, i)
+            from = nearest_known(values%points%x, known, i)
             k(:, i) = 0
             rate(i) = 0
             ! Where no domain of the front fits, the last part of a section, its own K must do.
             if (from == 0 .and. values%j(i) > 0) from = i
             if (from == 0) cycle
-            k(:, i) = values%k(:, from)
+            k(:, i) = averaged(:, from)
             rate(i) = max(0.0_wp, values%j(from))
             m%growth(g)%rayleigh(i) = values%material(from)%rayleigh
             m%growth(g)%dilatational(i) = values%material(from)%dilatation
@@ -270,7 +275,7 @@ contains
       integer :: i, body, c
 
       c = m%growth(g)%crack
-      call look_around(material, m%cracks(c)%front%x, 0, m%comm, m%grid, m%particles)
+      call look_around(material, m%cracks(c)%front%x, 1, m%comm, m%grid, m%particles)
       do i = 1, m%cracks(c)%front%node_count
          body = body_at(material, m%cracks(c)%front%x(:, i))
          m%growth(g)%outside(i) = body == 0
