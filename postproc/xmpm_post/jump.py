@@ -45,6 +45,7 @@ class Scene:
     normal: np.ndarray  # (3,) mean normal of the cracks
     title: str  # above the section
     label: str  # of the section's colours
+    jump_label: str  # of the cracks' colours
 
 
 def jump_of(crack: PolyData, normals, points, displacement, spacing) -> np.ndarray:
@@ -71,7 +72,9 @@ def choose_view(areas, points):
     return np.eye(3)[np.argmin(score)]
 
 
-def make_scene(particles: PolyData, crack: PolyData, scale: float | None = None) -> Scene:
+def make_scene(
+    particles: PolyData, crack: PolyData, scale: float | None = None, time_unit: str = ""
+) -> Scene:
     """Everything that is drawn, from the two data sets."""
     points, surface, triangles = particles.points, crack.points, surface_of(crack).triangles
     if "displacement" not in particles.fields:
@@ -88,6 +91,8 @@ def make_scene(particles: PolyData, crack: PolyData, scale: float | None = None)
     parallel = np.linalg.norm(normal) > 0.9 * np.linalg.norm(areas, axis=1).sum()
     normal /= max(np.linalg.norm(normal), np.finfo(float).tiny)
     size = np.linalg.norm(jump, axis=1)
+    unit = particles.units.get("displacement", "")
+    unit = f" [{unit}]" if unit else ""
     if scale is None:  # the widest opening becomes 4 % of the body
         scale = 0.04 * np.ptp(points, axis=0).max() / max(size.max(), np.finfo(float).tiny)
     # A thin section through the middle of the cracks, so that a crack inside the body shows.
@@ -106,8 +111,9 @@ def make_scene(particles: PolyData, crack: PolyData, scale: float | None = None)
         jump=size,
         view=view,
         normal=normal,
-        title=f"t = {particles.time:.6g}, displacements x {scale:.3g}",
-        label="displacement along the cracks' normal" if parallel else "displacement",
+        title=f"t = {particles.time:.6g} {time_unit}".rstrip() + f", displacements x {scale:.3g}",
+        label=("displacement along the cracks' normal" if parallel else "displacement") + unit,
+        jump_label="jump of displacement" + unit,
     )
 
 
@@ -151,7 +157,7 @@ def draw_with_pyvista(scene, path):
         lighting=False,
         show_edges=len(scene.triangles) < 5000,
         edge_opacity=0.2,
-        scalar_bar_args=BAR | {"title": "jump of displacement\n"},
+        scalar_bar_args=BAR | {"title": scene.jump_label + "\n"},
     )
     for front in scene.fronts:
         plotter.add_lines(scene.surface[front], color="red", width=4, connected=True)
@@ -193,7 +199,7 @@ def draw_with_matplotlib(scene, path):
     for front in scene.fronts:
         panel.plot(*scene.surface[front].T, color="red", linewidth=2)
     panel.set_title("cracks and fronts")
-    figure.colorbar(faces, ax=panel, location="bottom", label="jump of displacement", shrink=0.8)
+    figure.colorbar(faces, ax=panel, location="bottom", label=scene.jump_label, shrink=0.8)
     figure.savefig(path)
     plt.close(figure)
 
@@ -208,7 +214,7 @@ def draw_jump(
     """The picture; what was drawn, a line."""
     particles = run.particles(time)
     crack = run.crack(particles.time)
-    scene = make_scene(particles, crack, scale)
+    scene = make_scene(particles, crack, scale, run.units[1])
     renderer = choose_renderer(renderer)
     path.parent.mkdir(parents=True, exist_ok=True)
     (draw_with_pyvista if renderer == "pyvista" else draw_with_matplotlib)(scene, path)

@@ -47,6 +47,15 @@ class Run:
         """What the deck's *PROBE blocks ask for, over time."""
         return read_table(self.path("_probe.csv"))
 
+    @cached_property
+    def units(self) -> tuple[str, str]:
+        """Units of length and time; empty where the run does not tell."""
+        try:
+            words = self.energy.provenance.get("unit_system", "").split()
+        except PostError:
+            words = []
+        return (words[0], words[2]) if len(words) == 3 else ("", "")
+
     def particles(self, time: float | None = None) -> PolyData:
         """Particles of the step nearest to a time, or of the last step."""
         return read_step(self.path("_particles.vtkhdf"), time)

@@ -73,7 +73,7 @@ def make_scene(run: Run, time: float | None, field: str, quantity: str | None) -
     _, areas = vertex_normals(crack.points, crack.triangles)
     view, up = tilted_view(areas, crack.points)
     unit = crack.units.get(field, "")
-    length, time_unit = units_of(run)
+    length, time_unit = run.units
     return Scene(
         points=crack.points,
         triangles=crack.triangles,
@@ -87,15 +87,6 @@ def make_scene(run: Run, time: float | None, field: str, quantity: str | None) -
         title=f"{run.name}, t = {crack.time:.6g} {time_unit}".rstrip(),
         length=f" [{length}]" if length else "",
     )
-
-
-def units_of(run: Run) -> tuple[str, str]:
-    """Units of length and time; empty where the run does not tell."""
-    try:
-        words = run.energy.provenance.get("unit_system", "").split()
-    except PostError:
-        words = []
-    return (words[0], words[2]) if len(words) == 3 else ("", "")
 
 
 def draw_with_pyvista(scene: Scene, path: Path) -> None:

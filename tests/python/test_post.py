@@ -254,6 +254,14 @@ def test_jump_is_found_from_the_particles_on_both_sides(run):
     assert abs(scene.view[1]) == 0  # looks along the crack, not onto it
 
 
+def test_labels_of_the_jump_have_units(run):
+    results = open_run(run)
+    scene = jump_module.make_scene(results.particles(), results.crack(), time_unit="ms")
+    assert scene.title.startswith("t = ") and " ms, displacements x " in scene.title
+    for label in (scene.label, scene.jump_label):
+        assert label.endswith(" [mm]")
+
+
 def test_verify_draws_a_figure_a_case(tmp_path, capsys):
     table = tmp_path / "verification.csv"
     table.write_text(
