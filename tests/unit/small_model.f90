@@ -1,14 +1,16 @@
 !> A model from the text of a deck, for tests of what needs particles and ranks.
 module small_model
+   use xmpm_kinds, only: wp
    use xmpm_error, only: error_t
    use xmpm_communicator, only: comm_t
    use xmpm_deck, only: deck_t, parse_deck
+   use xmpm_storage, only: c_x
    use xmpm_model, only: model_t
    use xmpm_setup, only: set_up
    implicit none
    private
 
-   public :: make_model
+   public :: make_model, disturb, seed
 
 contains
 
@@ -31,4 +33,29 @@ contains
       m%comm = comm
       call set_up(m, deck, error)
    end subroutine make_model
+
+   !> Move all particles at random by a part of a cell in each direction, on each rank by its own.
+   subroutine disturb(m, most)
+      type(model_t), intent(inout) :: m
+      real(wp), intent(in) :: most   !! [length]
+      real(wp) :: u(3)
+      integer :: c, k
+
+      call seed(5 + m%comm%rank)
+      do c = 1, m%particles%n_chunks
+         do k = 1, m%particles%count(c)
+            call random_number(u)
+            m%particles%q(k, c_x:c_x + 2, c) = m%particles%q(k, c_x:c_x + 2, c) + most*(2*u - 1)
+         end do
+      end do
+   end subroutine disturb
+
+   !> Begin the random numbers anew.
+   subroutine seed(number)
+      integer, intent(in) :: number
+      integer :: k, n
+
+      call random_seed(size=n)
+      call random_seed(put=[(number + k, k=1, n)])
+   end subroutine seed
 end module small_model

@@ -13,7 +13,7 @@ program test_ahead_nodes
    use xmpm_gimp_kernels, only: weights_gimp
    use xmpm_settle, only: renew_splits
    use xmpm_model, only: model_t
-   use small_model, only: make_model
+   use small_model, only: make_model, disturb
    use testing, only: suite_t, check, check_close, check_no_error, finish
    implicit none
    real(wp), parameter :: shift = 3e-3_wp   !! of particles off their lattice, at most [cells]
@@ -38,7 +38,7 @@ program test_ahead_nodes
    call check_no_error(suite, 'the deck is set up', error)
    call find_split(m, split)
    before = number_of(split)
-   call disturb(m)
+   call disturb(m, shift)
    call renew_splits(m, error)
    call check_no_error(suite, 'nodes are split again', error)
    call find_split(m, split)
@@ -65,22 +65,6 @@ contains
 
       is = reached(3, :) > 0.1_wp .and. reached(side, :) > 0 .and. reached(side, :) < corners
    end function corner_alone
-
-   !> Move particles a little.
-   subroutine disturb(m)
-      type(model_t), intent(inout) :: m
-      real(wp) :: u(3)
-      integer :: c, k, n
-
-      call random_seed(size=n)
-      call random_seed(put=[(5 + k + comm%rank, k=1, n)])
-      do c = 1, m%particles%n_chunks
-         do k = 1, m%particles%count(c)
-            call random_number(u)
-            m%particles%q(k, c_x:c_x + 2, c) = m%particles%q(k, c_x:c_x + 2, c) + shift*(2*u - 1)
-         end do
-      end do
-   end subroutine disturb
 
    !> Which ordinary rows belong to split nodes.
    subroutine find_split(m, split)

@@ -7,12 +7,11 @@ program test_face_velocity
    use xmpm_communicator, only: comm_t, start_parallel, stop_parallel, max_all, sum_all
    use xmpm_deck, only: deck_t
    use xmpm_grid, only: node_position
-   use xmpm_storage, only: c_x
    use xmpm_crack, only: advance_crack
    use xmpm_settle, only: renew_splits
    use xmpm_stages, only: map_to_grid
    use xmpm_model, only: model_t
-   use small_model, only: make_model
+   use small_model, only: make_model, disturb
    use testing, only: suite_t, check, check_close, check_no_error, finish
    implicit none
    real(wp), parameter :: shift = 3e-3_wp   !! of particles off their lattice, at most [cells]
@@ -52,7 +51,7 @@ contains
          //'*BODY a material=alloy box=-6 -6 -6 6 6 6|*CRACK c disc centre=0.13 0.27 ' &
          //plane//' radius=3|', deck, m, error)
       call check_no_error(suite, head//'the deck is set up', error)
-      call disturb(m)
+      call disturb(m, shift)
       call renew_splits(m, error)
       call check_no_error(suite, head//'nodes are split again', error)
       call map_to_grid(m)
@@ -74,22 +73,6 @@ contains
       call check_close(suite, head//'faces do not slip', slip(1), 0.0_wp, 2*close, 0.0_wp)
       call check_close(suite, head//'faces move with the material', off(1), 0.0_wp, close, 0.0_wp)
    end subroutine turn
-
-   !> Move particles a little.
-   subroutine disturb(m)
-      type(model_t), intent(inout) :: m
-      real(wp) :: u(3)
-      integer :: c, k, n
-
-      call random_seed(size=n)
-      call random_seed(put=[(5 + k + comm%rank, k=1, n)])
-      do c = 1, m%particles%n_chunks
-         do k = 1, m%particles%count(c)
-            call random_number(u)
-            m%particles%q(k, c_x:c_x + 2, c) = m%particles%q(k, c_x:c_x + 2, c) + shift*(2*u - 1)
-         end do
-      end do
-   end subroutine disturb
 
    !> Of a body that turns.
    pure function velocity(x) result(v)

@@ -19,7 +19,7 @@ program test_rows
    use xmpm_balance, only: momenta
    use xmpm_stages, only: map_to_grid, advance_nodes, map_to_particles
    use xmpm_model, only: model_t
-   use small_model, only: make_model
+   use small_model, only: make_model, seed
    use testing, only: suite_t, check, check_close, check_no_error, finish
    implicit none
    character(len=*), parameter :: base = '*JOB rows|*UNITS length=mm mass=g time=ms|*TIME end=1|' &
@@ -77,10 +77,9 @@ contains
    subroutine randomise(m)
       type(model_t), intent(inout) :: m
       real(wp) :: u(14)
-      integer :: c, k, n
+      integer :: c, k
 
-      call random_seed(size=n)
-      call random_seed(put=[(77 + k + comm%rank, k=1, n)])
+      call seed(77 + comm%rank)
       do c = 1, m%particles%n_chunks
          do k = 1, m%particles%count(c)
             call random_number(u)

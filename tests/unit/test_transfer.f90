@@ -16,7 +16,7 @@ program test_transfer
    use xmpm_stages, only: map_to_grid, advance_nodes, map_to_particles, strain_particles
    use xmpm_settle, only: settle, choose_step
    use xmpm_model, only: model_t
-   use small_model, only: make_model
+   use small_model, only: make_model, seed
    use testing, only: suite_t, check, check_close, check_no_error, finish
    implicit none
    character(len=*), parameter :: units = '*JOB t|*UNITS length=mm mass=g time=ms|'
@@ -53,13 +53,12 @@ contains
       type(deck_t) :: deck
       type(error_t), allocatable :: error
       real(wp) :: u(14)
-      integer :: c, k, n
+      integer :: c, k
 
       call make_model(comm, units//'*GRID size=1 shape='//shape//'|'//block//rest, deck, m, error)
       call check_no_error(suite, 'the deck is set up', error)
       if (allocated(error)) error stop 'no model'
-      call random_seed(size=n)
-      call random_seed(put=[(77 + k + comm%rank, k=1, n)])
+      call seed(77 + comm%rank)
       if (.not. random) return
       do c = 1, m%particles%n_chunks
          do k = 1, m%particles%count(c)

@@ -14,7 +14,7 @@ program test_transfer_loss
    use xmpm_resolved, only: resolve_fields
    use xmpm_seen_loss, only: seen_loss
    use xmpm_model, only: model_t
-   use small_model, only: make_model
+   use small_model, only: make_model, seed
    use testing, only: suite_t, check, check_close, check_no_error, finish
    implicit none
    character(len=*), parameter :: block = '*JOB t|*UNITS length=mm mass=g time=ms|' &
@@ -59,13 +59,12 @@ contains
       type(deck_t) :: deck
       type(error_t), allocatable :: error
       real(wp) :: u(14)
-      integer :: c, k, n
+      integer :: c, k
 
       call make_model(comm, block//'*GRID size=1 shape='//shape//'|'//rest, deck, m, error)
       call check_no_error(suite, 'the deck is set up', error)
       if (allocated(error)) error stop 'no model'
-      call random_seed(size=n)
-      call random_seed(put=[(77 + k + comm%rank, k=1, n)])
+      call seed(77 + comm%rank)
       do c = 1, m%particles%n_chunks
          do k = 1, m%particles%count(c)
             call random_number(u)
