@@ -3,11 +3,11 @@ module xmpm_fetch_ahead
    use xmpm_fetch, only: fetch_lines
    use xmpm_lattice, only: bins_per_block
    use xmpm_grid, only: grid_t, row_fields
-   use xmpm_storage, only: particles_t, lanes, n_hot
+   use xmpm_storage, only: particles_t, lanes, n_hot, n_trace
    implicit none
    private
 
-   public :: fetch_chunk, fetch_bin, fetch_rows
+   public :: fetch_chunk, fetch_bin, fetch_traces, fetch_rows
 
 contains
 
@@ -33,6 +33,21 @@ contains
          c = p%next(c)
       end do
    end subroutine fetch_bin
+
+   !> Traces of all chunks of a bin.
+   pure subroutine fetch_traces(p, first)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: first       !! first chunk of the bin, 0 for none
+      integer :: c, r
+
+      if (p%trace < 0) return
+      c = first
+      do while (c > 0)
+         r = p%attached(c)
+         if (r > 0) call fetch_lines(p%near(1, p%trace + 1, r), lanes*n_trace)
+         c = p%next(c)
+      end do
+   end subroutine fetch_traces
 
    !> One part in 64 of the rows of a block's tile, so that a walk over the bins of the block before
    !> fetches all of them without ever waiting.

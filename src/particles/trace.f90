@@ -48,26 +48,22 @@ contains
    pure subroutine follow_lanes(l, dt, f)
       real(wp), intent(in) :: l(lanes, 9), dt
       real(wp), intent(inout) :: f(lanes, 9)
-      real(wp) :: a(lanes, 3), b(lanes, 3)
-      integer :: j, k
+      real(wp) :: x, y, z, a, b, c
+      integer :: i, j
 
       do j = 1, 3
-         call multiply(l, f(:, j), f(:, j + 3), f(:, j + 6), a)
-         call multiply(l, a(:, 1), a(:, 2), a(:, 3), b)
-         do k = 1, 3
-            f(:, 3*k - 3 + j) = f(:, 3*k - 3 + j) + dt*(a(:, k) + 0.5_wp*dt*b(:, k))
+         !$omp simd private(x, y, z, a, b, c)
+         do i = 1, lanes
+            x = f(i, j)
+            y = f(i, j + 3)
+            z = f(i, j + 6)
+            a = l(i, 1)*x + l(i, 2)*y + l(i, 3)*z
+            b = l(i, 4)*x + l(i, 5)*y + l(i, 6)*z
+            c = l(i, 7)*x + l(i, 8)*y + l(i, 9)*z
+            f(i, j) = x + dt*(a + 0.5_wp*dt*(l(i, 1)*a + l(i, 2)*b + l(i, 3)*c))
+            f(i, j + 3) = y + dt*(b + 0.5_wp*dt*(l(i, 4)*a + l(i, 5)*b + l(i, 6)*c))
+            f(i, j + 6) = z + dt*(c + 0.5_wp*dt*(l(i, 7)*a + l(i, 8)*b + l(i, 9)*c))
          end do
       end do
    end subroutine follow_lanes
-
-   !> L x in all lanes.
-   pure subroutine multiply(l, x, y, z, product)
-      real(wp), intent(in) :: l(lanes, 9), x(lanes), y(lanes), z(lanes)
-      real(wp), intent(out) :: product(lanes, 3)
-      integer :: k
-
-      do k = 1, 3
-         product(:, k) = l(:, 3*k - 2)*x + l(:, 3*k - 1)*y + l(:, 3*k)*z
-      end do
-   end subroutine multiply
 end module xmpm_trace

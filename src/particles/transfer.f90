@@ -10,7 +10,7 @@ module xmpm_transfer
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, lanes, c_x, c_m, n_hot, is_traced
    use xmpm_trace, only: follow_chunk
-   use xmpm_fetch_ahead, only: fetch_bin, fetch_rows
+   use xmpm_fetch_ahead, only: fetch_bin, fetch_traces, fetch_rows
    use xmpm_kernels, only: kernels_t, tile_nodes
    use xmpm_motion, only: tally_t, lane_tally_t, reduce_tally, change_velocity, note_motion, &
       move_lanes
@@ -245,6 +245,7 @@ contains
             call fetch_rows(grid, b + 1, k)
             call fetch_bin(p, bins%first(k + 2), c_x, c_x + 2)
             call fetch_bin(p, bins%first(k + 2), c_m, n_hot)
+            call fetch_traces(p, bins%first(k + 2))
             do while (c > 0)
                bins%frame(k)%half = bodies%half(p%body(c))
                if (bins%sided(k) == 0) then
