@@ -10,8 +10,7 @@ module xmpm_front
 
    public :: front_t, front_place_t
    public :: front_test_points, mark_front, refresh_front, shift_front, nearest_on_front, &
-      frame_on_front, &
-      vertex_phi
+      nearest_of_group, frame_on_front, vertex_phi
    public :: fully_cracked, beyond_reach
 
    real(wp), parameter :: fully_cracked = -1.0e30_wp   !! phi where no front is near [length]
@@ -151,11 +150,138 @@ contains
             count = count + 2
          end if
       end do
-      if (place%edge == 0) return
-      place%distance = sqrt(best)
+      if (place%edge > 0) call finish_place(front, best, place)
+   end subroutine nearest_on_front
+
+   !> Distance, and the node where the place is one.
+   pure subroutine finish_place(front, distance2, place)
+      type(front_t), intent(in) :: front
+      real(wp), intent(in) :: distance2              !! square of the distance [length^2]
+      type(front_place_t), intent(inout) :: place
+
+      place%distance = sqrt(distance2)
       if (place%fraction <= 0.0_wp) place%node = front%edge_node(1, place%edge)
       if (place%fraction >= 1.0_wp) place%node = front%edge_node(2, place%edge)
-   end subroutine nearest_on_front
+   end subroutine finish_place
+
+   !> The nearest points of the fronts within reach of n points in a ball, whose middle is known to
+   !> be a distance from the fronts: what `nearest_on_front` says of each, for all at once.
+   pure subroutine nearest_of_group(front, n, x, middle, radius, distance, reach, places)
+      type(front_t), intent(in) :: front               !! fronts of one crack
+      integer, intent(in) :: n
+      real(wp), intent(in) :: x(n, 3)                  !! points [length]
+      real(wp), intent(in) :: middle(3), radius        !! the ball [length]
+      real(wp), intent(in) :: distance                 !! of its middle [length]
+      real(wp), intent(in) :: reach                    !! largest distance of interest [length]
+      type(front_place_t), intent(out) :: places(n)    !! edge 0 where nothing is within reach
+      real(wp) :: best(n), fraction(n)
+      integer :: edge(n), near(front%edge_count), i, k, count
+
+      best = reach*reach
+      edge = 0
+      call edges_within(front, middle, distance + 2*radius, near, count)
+      do k = 1, count
+         call try_edge_of_group(front, near(k), n, x, best, edge, fraction)
+      end do
+      do i = 1, n
+         if (edge(i) == 0) cycle
+         places(i)%edge = edge(i)
+         places(i)%fraction = fraction(i)
+         places(i)%point = place_on_edge(front, edge(i), fraction(i))
+         call finish_place(front, best(i), places(i))
+      end do
+   end subroutine nearest_of_group
+
+   !> Edges whose boxes are within reach of a point, in ascending order.
+   pure subroutine edges_within(front, x, reach, near, count)
+      type(front_t), intent(in) :: front
+      real(wp), intent(in) :: x(3), reach         !! [length]
+      integer, intent(inout) :: near(:)           !! filled up to count
+      integer, intent(out) :: count
+      integer :: waiting(tree_depth), waits, node, i
+
+      count = 0
+      waits = 0
+      if (front%edge_count > 0) then
+         waits = 1
+         waiting(1) = 1
+      end if
+      do while (waits > 0)
+         node = waiting(waits)
+         waits = waits - 1
+         if (box_distance2(front%tree%box(:, node), x) > reach*reach) cycle
+         if (front%tree%second(node) == 0) then
+            do i = front%tree%first(node), front%tree%last(node)
+               call insert(front%tree%item(i), near, count)
+            end do
+         else
+            waiting(waits + 1:waits + 2) = [front%tree%second(node), node + 1]
+            waits = waits + 2
+         end if
+      end do
+   end subroutine edges_within
+
+   !> Insert a number into an ascending list.
+   pure subroutine insert(item, list, count)
+      integer, intent(in) :: item
+      integer, intent(inout) :: list(:), count
+      integer :: i
+
+      i = count
+      do while (i > 0)
+         if (list(i) < item) exit
+         list(i + 1) = list(i)
+         i = i - 1
+      end do
+      list(i + 1) = item
+      count = count + 1
+   end subroutine insert
+
+   !> Take an edge as the nearest of the points for which it is nearer than those before.
+   pure subroutine try_edge_of_group(front, edge, n, x, best, nearest, fraction)
+      type(front_t), intent(in) :: front
+      integer, intent(in) :: edge, n
+      real(wp), intent(in) :: x(n, 3)
+      real(wp), intent(inout) :: best(n)         !! square of the distance [length^2]
+      integer, intent(inout) :: nearest(n)
+      real(wp), intent(inout) :: fraction(n)
+      real(wp) :: a(3), b(3), t(3), f, per, d1, d2, d3, square
+      logical :: past
+      integer :: i
+
+      a = front%x(:, front%edge_node(1, edge))
+      b = front%x(:, front%edge_node(2, edge))
+      t = b - a
+      per = 1/dot_product(t, t)
+      !$omp simd private(f, d1, d2, d3, square, past)
+      do i = 1, n
+         d1 = x(i, 1) - a(1)
+         d2 = x(i, 2) - a(2)
+         d3 = x(i, 3) - a(3)
+         f = min(1.0_wp, max(0.0_wp, (d1*t(1) + d2*t(2) + d3*t(3))*per))
+         ! from the node itself, so that both of its edges are at the same distance
+         past = f >= 1.0_wp
+         d1 = merge(x(i, 1) - b(1), d1 - f*t(1), past)
+         d2 = merge(x(i, 2) - b(2), d2 - f*t(2), past)
+         d3 = merge(x(i, 3) - b(3), d3 - f*t(3), past)
+         square = d1*d1 + d2*d2 + d3*d3
+         nearest(i) = merge(edge, nearest(i), square < best(i))
+         fraction(i) = merge(f, fraction(i), square < best(i))
+         best(i) = min(square, best(i))
+      end do
+   end subroutine try_edge_of_group
+
+   !> Point of an edge at a fraction of its length.
+   pure function place_on_edge(front, edge, fraction) result(point)
+      type(front_t), intent(in) :: front
+      integer, intent(in) :: edge
+      real(wp), intent(in) :: fraction
+      real(wp) :: point(3), a(3)
+
+      a = front%x(:, front%edge_node(1, edge))
+      point = front%x(:, front%edge_node(2, edge))
+      if (fraction < 1.0_wp) point = a + fraction*(point - a)
+   end function place_on_edge
 
    !> Take an edge as the nearest if it is; of edges at the same distance the lowest number.
    pure subroutine try_edge(front, edge, x, best, place)
@@ -169,8 +295,7 @@ contains
       a = front%x(:, front%edge_node(1, edge))
       t = front%x(:, front%edge_node(2, edge)) - a
       f = min(1.0_wp, max(0.0_wp, dot_product(x - a, t)/dot_product(t, t)))
-      q = a + f*t
-      if (f >= 1.0_wp) q = front%x(:, front%edge_node(2, edge))
+      q = place_on_edge(front, edge, f)
       d2 = sum((x - q)**2)
       if (d2 > best) return
       if (.not. d2 < best .and. place%edge > 0 .and. edge > place%edge) return

@@ -192,12 +192,13 @@ contains
       real(wp), intent(in) :: e(3, 3), t(3, 3), h(3)   !! frame, stress and u_i,1 in it
       real(wp), intent(in) :: xi, half_width           !! along the front, of the window [length]
       real(wp), intent(in) :: drift(3)
-      real(wp) :: inside(4), l, slope, v1(3)
+      real(wp) :: inside(4), l, window(1), slope(1), v1(3)
 
-      call window_at(xi, half_width, l, slope)
+      call window_at(1, [xi], half_width, window, slope)
+      l = window(1)
       v1 = matmul(s%rate, e(:, 1))
       inside(1) = l*dot_product(matmul(s%pull, e), h)
-      inside(2) = s%volume*slope*dot_product(t(:, 3), h)
+      inside(2) = s%volume*slope(1)*dot_product(t(:, 3), h)
       inside(3) = -s%volume*l*s%density*dot_product(s%v, v1)
       inside(4) = -s%volume*l*s%density*dot_product(s%v - drift, v1)
    end function integrands

@@ -18,23 +18,30 @@ module xmpm_cosine_fall
 contains
 
    !> f = (1 + cos pi t)/2 and its slope, for t from 0 to 1: with x = pi (t - 1/2), that is
-   !> (1 - sin x)/2 and -pi/2 cos x.
-   pure subroutine cosine_fall(t, f, slope)
-      real(wp), intent(in) :: t
-      real(wp), intent(out) :: f       !! 1 to 0
-      real(wp), intent(out) :: slope   !! df/dt
-      real(wp) :: x, x2, sine, cosine
-      integer :: k
+   !> (1 - sin x)/2 and -pi/2 cos x. Before 0 and from 1 on f is 1 and 0.
+   pure subroutine cosine_fall(n, t, f, slope)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: t(n)
+      real(wp), intent(out) :: f(n)       !! 1 to 0
+      real(wp), intent(out) :: slope(n)   !! df/dt
+      real(wp) :: x, x2, sine, cosine, falls, past
+      integer :: i, k
 
-      x = pi*(t - 0.5_wp)
-      x2 = x*x
-      sine = of_sine(last)
-      cosine = of_cosine(last)
-      do k = last - 1, 0, -1
-         sine = of_sine(k) + x2*sine
-         cosine = of_cosine(k) + x2*cosine
+      !$omp simd private(x, x2, sine, cosine, falls, past)
+      do i = 1, n
+         x = pi*(min(max(t(i), 0.0_wp), 1.0_wp) - 0.5_wp)
+         x2 = x*x
+         sine = of_sine(last)
+         cosine = of_cosine(last)
+         !GCC$ unroll 10
+         do k = last - 1, 0, -1
+            sine = of_sine(k) + x2*sine
+            cosine = of_cosine(k) + x2*cosine
+         end do
+         past = merge(1.0_wp, 0.0_wp, t(i) >= 1)
+         falls = merge(1.0_wp, 0.0_wp, t(i) > 0)*(1 - past)
+         f(i) = falls*(0.5_wp - 0.5_wp*x*sine) + (1 - falls)*(1 - past)
+         slope(i) = -falls*0.5_wp*pi*cosine
       end do
-      f = 0.5_wp - 0.5_wp*x*sine
-      slope = -0.5_wp*pi*cosine
    end subroutine cosine_fall
 end module xmpm_cosine_fall

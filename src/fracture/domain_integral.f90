@@ -53,6 +53,9 @@ module xmpm_domain_integral
       integer :: sample(lanes) = 0
    end type batch_t
 
+   !> Along e3, in all lanes.
+   real(wp), parameter :: along_front(lanes, 3) = spread([0.0_wp, 0.0_wp, 1.0_wp], 1, lanes)
+
    !> Sums of one point in lanes.
    type :: lane_sums_t
       real(wp), allocatable :: part(:, :, :)   !! (lanes,6,nr) J, four interactions, volume
@@ -81,36 +84,30 @@ contains
       type(domain_sums_t), intent(inout) :: sums
       type(batch_t) :: batch(points%n)
       type(lane_sums_t) :: lane_sums(points%n)
-      real(wp), allocatable :: weights(:, :, :)
       real(wp) :: reach
       integer :: near(points%n), i, k, n, m
 
       reach = maxval(shape%radius)
-      allocate (weights(2, size(shape%radius), size(samples)))
       do m = 1, points%n
          allocate (lane_sums(m)%part(lanes, 6, size(shape%radius)), source=0.0_wp)
       end do
       do i = 1, size(samples)
          if (samples(i)%r >= reach) cycle
          call points_near(front, points, samples(i), shape%reach, near, n)
-         do k = 1, size(shape%radius)
-            call profile(samples(i)%r, shape%inner, shape%radius(k), weights(1, k, i), &
-               weights(2, k, i))
-         end do
          do k = 1, n
             m = near(k)
             if (.not. sees(front, points, m, shape%half_width, samples(i))) cycle
             batch(m)%n = batch(m)%n + 1
             batch(m)%sample(batch(m)%n) = i
             if (batch(m)%n < lanes) cycle
-            call add_batch(samples, weights, batch(m)%sample, points, m, shape, speed(m), &
-               drift(:, m), lane_sums(m))
+            call add_batch(samples, batch(m)%sample, points, m, shape, speed(m), drift(:, m), &
+               lane_sums(m))
             batch(m)%n = 0
          end do
       end do
       do m = 1, points%n
-         if (batch(m)%n > 0) call add_batch(samples, weights, batch(m)%sample(:batch(m)%n), &
-            points, m, shape, speed(m), drift(:, m), lane_sums(m))
+         if (batch(m)%n > 0) call add_batch(samples, batch(m)%sample(:batch(m)%n), points, m, &
+            shape, speed(m), drift(:, m), lane_sums(m))
          call add_lane_sums(lane_sums(m), m, sums)
       end do
    end subroutine sum_domains
@@ -178,9 +175,8 @@ contains
    end subroutine points_near
 
    !> Add samples to one point.
-   pure subroutine add_batch(samples, weights, chosen, points, m, shape, speed, drift, lane_sums)
+   pure subroutine add_batch(samples, chosen, points, m, shape, speed, drift, lane_sums)
       type(sample_t), intent(in) :: samples(:)
-      real(wp), intent(in) :: weights(:, :, :)      !! (2,nr,samples) w and dw/dr
       integer, intent(in) :: chosen(:)              !! one for each lane, or less
       type(front_points_t), intent(in) :: points
       integer, intent(in) :: m
@@ -188,82 +184,52 @@ contains
       real(wp), intent(in) :: speed, drift(3)
       type(lane_sums_t), intent(inout) :: lane_sums
       type(view_t) :: view
-      real(wp) :: across(lanes, 5), rest(lanes, 6), tilt(lanes, 5), l(lanes), fade(lanes)
-      real(wp) :: along(lanes, 3)
-      integer :: i, k
+      real(wp) :: across(lanes, 5), rest(lanes, 6), l(lanes), slope(lanes), fade(lanes)
+      real(wp) :: direction(lanes, 3)
+      integer :: k
 
       call look(samples, chosen, points, m, view)
+      call window_at(lanes, view%d(:, 3), shape%half_width, l, slope)
+      call direction_at(lanes, points, m, view%d, shape%half_width, direction, fade)
       rest = 0
-      call windows(samples, chosen, points, m, shape%half_width, view, l, rest(:, 6), fade, along)
       if (any(abs(fade) > 0)) then
-         view%g = spread(points%outward(:, m), 1, lanes)
+         do k = 1, 3
+            view%g(:, k) = points%outward(k, m)
+         end do
          call aim(samples, chosen, points, m, speed, drift, view)
-         call flux_along(view, view%g, tilt)
+         call flux_along(view, view%g, across)
          do k = 1, 5
-            rest(:, k) = l*fade*view%volume*tilt(:, k)
+            rest(:, k) = l*fade*view%volume*across(:, k)
          end do
       end if
-      view%g = along
+      view%g = direction
       call aim(samples, chosen, points, m, speed, drift, view)
-      along = spread([0.0_wp, 0.0_wp, 1.0_wp], 1, lanes)
-      call flux_along(view, along, across)
+      call flux_along(view, along_front, across)
       do k = 1, 5
-         rest(:, k) = rest(:, k) + view%volume*rest(:, 6)*across(:, k) + l*view%source(:, k)
+         rest(:, k) = rest(:, k) + view%volume*slope*across(:, k) + l*view%source(:, k)
       end do
       rest(:, 6) = view%volume*l
       call flux_along(view, view%away, across)
       do k = 1, 5
-         across(:, k) = view%volume*l*across(:, k)
+         across(:, k) = rest(:, 6)*across(:, k)
       end do
-      do i = 1, size(shape%radius)
-         call add_radius(weights, chosen, i, across, rest, lane_sums%part(:, :, i))
+      do k = 1, size(shape%radius)
+         call add_radius(view%r, shape%inner, shape%radius(k), across, rest, &
+            lane_sums%part(:, :, k))
       end do
       lane_sums%mean(:, :4) = lane_sums%mean(:, :4) + view%mean
-      call add_strains(samples, chosen, points, m, shape%inner, l, view, lane_sums%mean(:, 5:))
+      call add_strains(view, points, m, shape%inner, l, lane_sums%mean(:, 5:))
    end subroutine add_batch
 
-   !> Window, its slope, direction of q and how that fades, in lanes.
-   pure subroutine windows(samples, chosen, points, m, half_width, view, l, slope, fade, direction)
-      type(sample_t), intent(in) :: samples(:)
-      integer, intent(in) :: chosen(:)
-      type(front_points_t), intent(in) :: points
-      integer, intent(in) :: m
-      real(wp), intent(in) :: half_width
-      type(view_t), intent(in) :: view
-      real(wp), intent(out) :: l(lanes), slope(lanes), fade(lanes), direction(lanes, 3)
-      real(wp) :: g(3)
-      integer :: i
-
-      l = 0
-      slope = 0
-      fade = 0
-      direction = spread([1.0_wp, 0.0_wp, 0.0_wp], 1, lanes)
-      do i = 1, size(chosen)
-         call window_at(view%d(i, 3), half_width, l(i), slope(i))
-      end do
-      if (.not. abs(points%outward(1, m)) > 0) return
-      do i = 1, size(chosen)
-         call direction_at(points, m, samples(chosen(i))%x, half_width, g, fade(i))
-         direction(i, :) = g
-      end do
-   end subroutine windows
-
-   !> Add the samples within one radius.
-   pure subroutine add_radius(weights, chosen, radius, across, rest, part)
-      real(wp), intent(in) :: weights(:, :, :)
-      integer, intent(in) :: chosen(:), radius      !! samples, number of the radius
+   !> Add what counts within one radius.
+   pure subroutine add_radius(r, inner, outer, across, rest, part)
+      real(wp), intent(in) :: r(lanes), inner, outer          !! [length]
       real(wp), intent(in) :: across(lanes, 5), rest(lanes, 6)
       real(wp), intent(inout) :: part(lanes, 6)
       real(wp) :: w(lanes), dw(lanes)
-      integer :: i, k
+      integer :: k
 
-      w = 0
-      dw = 0
-      do i = 1, size(chosen)
-         w(i) = weights(1, radius, chosen(i))
-         dw(i) = weights(2, radius, chosen(i))
-      end do
-      if (.not. any(w > 0)) return
+      call profile(lanes, r, inner, outer, w, dw)
       do k = 1, 5
          part(:, k) = part(:, k) + dw*across(:, k) + w*rest(:, k)
       end do
@@ -271,39 +237,30 @@ contains
    end subroutine add_radius
 
    !> Add the samples within the inner radius to the fit of the strain along the front.
-   pure subroutine add_strains(samples, chosen, points, m, inner, l, view, along)
-      type(sample_t), intent(in) :: samples(:)
-      integer, intent(in) :: chosen(:)
+   pure subroutine add_strains(view, points, m, inner, l, along)
+      type(view_t), intent(in) :: view
       type(front_points_t), intent(in) :: points
       integer, intent(in) :: m
       real(wp), intent(in) :: inner, l(lanes)
-      type(view_t), intent(in) :: view
       real(wp), intent(inout) :: along(lanes, 5)
       real(wp) :: products(lanes, 5), inside(lanes)
       integer :: k
 
-      inside = 0
-      do k = 1, size(chosen)
-         if (samples(chosen(k))%r < inner) inside(k) = 1
-      end do
-      if (.not. any(inside > 0)) return
+      if (.not. minval(view%r) < inner) return
+      inside = merge(l, 0.0_wp, view%r < inner)
       call strain_along(view, points, m, inner, products)
       do k = 1, 5
-         along(:, k) = along(:, k) + inside*l*products(:, k)
+         along(:, k) = along(:, k) + inside*products(:, k)
       end do
    end subroutine add_strains
 
-   !> w and dw/dr: 1 up to the inner radius, then a cosine to 0 at the outer one.
-   pure subroutine profile(r, inner, outer, w, dw)
-      real(wp), intent(in) :: r, inner, outer   !! [length]
-      real(wp), intent(out) :: w, dw            !! 0 to 1, [1/length]
+   !> w and dw/dr at n places: 1 up to the inner radius, then a cosine to 0 at the outer one.
+   pure subroutine profile(n, r, inner, outer, w, dw)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: r(n), inner, outer   !! [length]
+      real(wp), intent(out) :: w(n), dw(n)         !! 0 to 1, [1/length]
 
-      w = 1
-      dw = 0
-      if (r <= inner) return
-      w = 0
-      if (r >= outer) return
-      call cosine_fall((r - inner)/(outer - inner), w, dw)
+      call cosine_fall(n, (r - inner)/(outer - inner), w, dw)
       dw = dw/(outer - inner)
    end subroutine profile
 

@@ -14,6 +14,7 @@ module xmpm_domain_lanes
    !> Samples in the lanes. Directions of q have no part along e2.
    type :: view_t
       real(wp) :: d(lanes, 3)          !! place [length]
+      real(wp) :: r(lanes)             !! distance from the front [length]
       real(wp) :: away(lanes, 3)       !! unit vector from the front
       real(wp) :: stress(lanes, 6)     !! 11 22 33 12 23 13 [stress]
       real(wp) :: strain(lanes, 6)     !! that goes with it, 12 23 13 twice
@@ -48,6 +49,7 @@ contains
       do i = 1, lanes
          associate (p => samples(chosen(min(i, size(chosen)))))
             x(i, :) = p%x - points%x(:, m)
+            view%r(i) = p%r
             away(i, :) = p%away
             s(i, :) = p%stress
             pull(i, :) = p%pull

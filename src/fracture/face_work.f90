@@ -56,23 +56,23 @@ contains
       type(front_points_t), intent(in) :: points
       type(domain_shape_t), intent(in) :: shape
       type(domain_sums_t), intent(inout) :: sums
-      real(wp) :: e(3, 3), d(3), g(3), l, slope, fade, w, dw, power(4)
+      real(wp) :: e(3, 3), d(3), g(1, 3), l(1), slope(1), fade(1), w(1), dw(1), power(4)
       integer :: r
 
       e = points%frame(:, :, m)
       d = matmul(s%x - points%x(:, m), e)
-      call window_at(d(3), shape%half_width, l, slope)
-      call direction_at(points, m, s%x, shape%half_width, g, fade)
+      call window_at(1, d(3:), shape%half_width, l, slope)
+      call direction_at(1, points, m, d, shape%half_width, g, fade)
       associate (t => faces%traction(:, i), rest => sums%material(:, m))
-         power(1) = dot_product(t, matmul(faces%slope(:, :, i), matmul(e, g)))
-         power(2:) = g(1)*unit_powers(matmul(t, e), d, rest(3)/rest(1), &
+         power(1) = dot_product(t, matmul(faces%slope(:, :, i), matmul(e, g(1, :))))
+         power(2:) = g(1, 1)*unit_powers(matmul(t, e), d, rest(3)/rest(1), &
             0.5_wp*rest(2)/(rest(2) + rest(3)), sqrt(faces%area(i)))
       end associate
-      power = -faces%area(i)*l*power
+      power = -faces%area(i)*l(1)*power
       do r = 1, size(shape%radius)
-         call profile(s%r, shape%inner, shape%radius(r), w, dw)
-         sums%j(r, m) = sums%j(r, m) + w*power(1)
-         sums%interaction(:3, r, m) = sums%interaction(:3, r, m) + w*power(2:)
+         call profile(1, [s%r], shape%inner, shape%radius(r), w, dw)
+         sums%j(r, m) = sums%j(r, m) + w(1)*power(1)
+         sums%interaction(:3, r, m) = sums%interaction(:3, r, m) + w(1)*power(2:)
          if (s%r < shape%radius(r)) sums%faces(r, m) = sums%faces(r, m) + power(1)
       end do
    end subroutine add_point

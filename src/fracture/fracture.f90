@@ -47,6 +47,7 @@ module xmpm_fracture
       type(front_values_t), allocatable :: values(:)   !! of each crack in the list, last time
       logical :: measured = .false.                 !! there are values
       type(face_forces_t) :: faces                  !! contact of the crack that is looked at
+      type(sample_t), allocatable :: room(:)        !! for samples, kept for the next time
    end type fracture_t
 
 contains
@@ -112,12 +113,12 @@ contains
       real(wp), intent(in) :: speed(:)             !! of the front at its nodes [length/time]
       type(crack_t) :: crack
       type(front_values_t) :: values
-      type(sample_t), allocatable :: samples(:)
       type(domain_sums_t) :: sums
       type(rates_t) :: rates
       type(face_points_t) :: faces
       real(wp), allocatable :: drift(:, :)
       real(wp) :: reach
+      integer :: n
       logical :: moving
 
       associate (number => fracture%cracks(which), shape => fracture%shape)
@@ -133,15 +134,15 @@ contains
          if (any(fracture%methods /= method_domain)) reach = reach + shape%support
          moving = any(speed > 0) .or. any(fracture%methods /= method_domain)
          call collect_samples(crack, number, reach, allocated(crack%offset), moving, comm, halo, &
-            grid, p, bodies, kernels, sided, loads, time, samples)
-         call find_ends(crack%front, comm, grid%lattice%size, samples, values%points)
+            grid, p, bodies, kernels, sided, loads, time, fracture%room, n)
+         call find_ends(crack%front, comm, grid%lattice%size, fracture%room(:n), values%points)
          call clear_sums(sums, size(shape%radius), values%points%n)
-         drift = drift_at(samples, values%points, speed, comm)
-         call sum_domains(samples, crack%front, values%points, shape, speed, drift, sums)
+         drift = drift_at(fracture%room(:n), values%points, speed, comm)
+         call sum_domains(fracture%room(:n), crack%front, values%points, shape, speed, drift, sums)
          call sum_over_ranks(comm, sums)
          call add_face_work(faces, crack%front, values%points, shape, sums)
-         call find_rates(fracture%methods, comm, samples, crack%front, values%points, shape, &
-            speed, drift, sums, rates)
+         call find_rates(fracture%methods, comm, fracture%room(:n), crack%front, values%points, &
+            shape, speed, drift, sums, rates)
          call find_values(crack, shape, sums, rates, fracture%behind, values)
          call flag_neighbours(cracks, number, values)
       end associate

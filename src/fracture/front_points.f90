@@ -150,26 +150,34 @@ contains
       end do
    end subroutine face_ends
 
-   !> Direction of q in the frame of a point: e1, but tangent to the plane in which the front ends
-   !> near it, fading over a depth.
-   pure subroutine direction_at(points, i, x, depth, direction, fade)
+   !> Direction of q at n places in the frame of a point: e1, but tangent to the plane in which the
+   !> front ends near it, fading over a depth.
+   pure subroutine direction_at(n, points, i, d, depth, direction, fade)
+      integer, intent(in) :: n
       type(front_points_t), intent(in) :: points
-      integer, intent(in) :: i               !! point
-      real(wp), intent(in) :: x(3)           !! place [length]
-      real(wp), intent(in) :: depth          !! [length]
-      real(wp), intent(out) :: direction(3)  !! e1 - eta (e1 . n) n
-      real(wp), intent(out) :: fade          !! -(e1 . n) d eta/dn, 0 beyond the depth [1/length]
-      real(wp) :: below
+      integer, intent(in) :: i                  !! point
+      real(wp), intent(in) :: d(n, 3)           !! places from the point, in its frame [length]
+      real(wp), intent(in) :: depth             !! [length]
+      real(wp), intent(out) :: direction(n, 3)  !! e1 - eta (e1 . out) out
+      real(wp), intent(out) :: fade(n)          !! -(e1 . out) d eta/d out, 0 beyond the depth
+                                                !! [1/length]
+      real(wp) :: out(3), eta, stop
+      integer :: k
 
-      direction = [1.0_wp, 0.0_wp, 0.0_wp]
+      direction(:, 1) = 1
+      direction(:, 2:) = 0
       fade = 0
-      associate (n => points%outward(:, i))
-         if (.not. abs(n(1)) > 1e-9_wp) return
-         below = dot_product(matmul(points%stop(:, i) - x, points%frame(:, :, i)), n)
-         if (below >= depth) return
-         direction = direction - (1 - below/depth)*n(1)*n
-         fade = -n(1)/depth
-      end associate
+      out = points%outward(:, i)
+      if (.not. abs(out(1)) > 1e-9_wp) return
+      stop = dot_product(matmul(points%stop(:, i) - points%x(:, i), points%frame(:, :, i)), out)
+      !$omp simd private(eta)
+      do k = 1, n
+         eta = max(1 - (stop - d(k, 1)*out(1) - d(k, 2)*out(2) - d(k, 3)*out(3))/depth, 0.0_wp)
+         direction(k, 1) = 1 - eta*out(1)*out(1)
+         direction(k, 2) = -eta*out(1)*out(2)
+         direction(k, 3) = -eta*out(1)*out(3)
+         fade(k) = merge(-out(1)/depth, 0.0_wp, eta > 0)
+      end do
    end subroutine direction_at
 
    !> Whether an edge of the front belongs to the part that a point looks at.
@@ -198,17 +206,15 @@ contains
       points%s(node) = front%s(node) - way*beyond
    end subroutine pull_back
 
-   !> The window l of a point: 1 at the point, a cosine to 0 at the half-width along e3.
-   pure subroutine window_at(xi, half_width, l, slope)
-      real(wp), intent(in) :: xi           !! along e3 from the point [length]
+   !> The window l of a point at n places: 1 at the point, a cosine to 0 at the half-width along e3.
+   pure subroutine window_at(n, xi, half_width, l, slope)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: xi(n)        !! along e3 from the point [length]
       real(wp), intent(in) :: half_width   !! [length]
-      real(wp), intent(out) :: l           !! 0 to 1
-      real(wp), intent(out) :: slope       !! dl/dxi [1/length]
+      real(wp), intent(out) :: l(n)        !! 0 to 1
+      real(wp), intent(out) :: slope(n)    !! dl/dxi [1/length]
 
-      l = 0
-      slope = 0
-      if (abs(xi) >= half_width) return
-      call cosine_fall(abs(xi)/half_width, l, slope)
+      call cosine_fall(n, abs(xi)/half_width, l, slope)
       slope = sign(slope, -xi)/half_width
    end subroutine window_at
 
@@ -245,19 +251,19 @@ contains
       integer, intent(in) :: i                          !! point
       real(wp), intent(in) :: a(3), b(3), ahead(3)      !! the edge and the normal ahead of it
       real(wp), intent(in) :: half_width
-      real(wp) :: length, x(3), direction(3), fade, l, slope
+      real(wp) :: length
       integer, parameter :: steps = 16
+      real(wp) :: d(steps, 3), direction(steps, 3), fade(steps), l(steps), slope(steps)
       integer :: k
 
-      length = 0
       do k = 1, steps
-         x = a + (real(k, wp) - 0.5_wp)/real(steps, wp)*(b - a)
-         call window_at(dot_product(x - points%x(:, i), points%frame(:, 3, i)), half_width, l, &
-            slope)
-         call direction_at(points, i, x, half_width, direction, fade)
-         length = length + l*dot_product(matmul(points%frame(:, :, i), direction), ahead)
+         d(k, :) = matmul(a + (real(k, wp) - 0.5_wp)/real(steps, wp)*(b - a) - points%x(:, i), &
+            points%frame(:, :, i))
       end do
-      length = length*norm2(b - a)/real(steps, wp)
+      call window_at(steps, d(:, 3), half_width, l, slope)
+      call direction_at(steps, points, i, d, half_width, direction, fade)
+      length = dot_product(l, matmul(direction, matmul(ahead, points%frame(:, :, i)))) &
+         *norm2(b - a)/real(steps, wp)
    end function length_near_end
 
    !> Ends of an edge, moved to the end of the material where it is the last of an open front.
@@ -282,15 +288,15 @@ contains
    !> Integral of the window along a straight edge from a to b.
    pure function edge_length(a, b, x, e3, half_width) result(length)
       real(wp), intent(in) :: a(3), b(3), x(3), e3(3), half_width
-      real(wp) :: length, from, to, l, slope
+      real(wp) :: length, from, to, l(1), slope(1)
 
       from = dot_product(a - x, e3)
       to = dot_product(b - x, e3)
       if (abs(to - from) > 1e-6_wp*half_width) then
          length = norm2(b - a)/(to - from)*(antiderivative(to) - antiderivative(from))
       else
-         call window_at(0.5_wp*(from + to), half_width, l, slope)
-         length = norm2(b - a)*l
+         call window_at(1, [0.5_wp*(from + to)], half_width, l, slope)
+         length = norm2(b - a)*l(1)
       end if
 
    contains

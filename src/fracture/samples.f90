@@ -6,14 +6,15 @@ module xmpm_samples
    use xmpm_lattice, only: bin_corner
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, lanes, bin_of_chunk, c_x, c_v, c_m, c_vol, c_s, &
-      n_hot, n_near, near_crack, near_psi, n_trace, trace_f, trace_work
+      n_near, near_crack, near_psi, trace_f, trace_work
    use xmpm_kernels, only: kernels_t
    use xmpm_sided, only: sided_t
+   use xmpm_fetch_ahead, only: fetch_record
    use xmpm_transfer, only: bodies_t
    use xmpm_elastic, only: elastic_t
    use xmpm_loads, only: load_t, force_on_lanes
    use xmpm_vectors, only: unit_vector, inverse
-   use xmpm_front, only: front_t, front_place_t, nearest_on_front
+   use xmpm_front, only: front_t, front_place_t, nearest_on_front, nearest_of_group
    use xmpm_crack, only: crack_t
    use xmpm_chunk_state, only: pull_and_rate
    use xmpm_resolved, only: resolve_fields
@@ -56,7 +57,7 @@ contains
    !> momentum and force as P2G leaves them. With `resolve` stress, deformation and velocity are
    !> what the grid resolves of them. Collective.
    subroutine collect_samples(crack, number, reach, resolve, moving, comm, halo, grid, p, bodies, &
-         kernels, sided, loads, time, samples)
+         kernels, sided, loads, time, samples, n)
       type(crack_t), intent(in) :: crack                      !! gathered
       integer, intent(in) :: number                           !! of the crack
       real(wp), intent(in) :: reach                           !! [length]
@@ -71,14 +72,15 @@ contains
       type(sided_t), intent(in) :: sided
       type(load_t), intent(in) :: loads(:)
       real(wp), intent(in) :: time                            !! of the loads [time]
-      type(sample_t), allocatable, intent(out) :: samples(:)
-      real(wp), allocatable :: fields(:, :, :)
+      type(sample_t), allocatable, intent(inout) :: samples(:)   !! room, renewed if too small
+      integer, intent(out) :: n                               !! samples, the first of `samples`
+      real(wp), allocatable :: fields(:, :, :), distance(:)
       integer, allocatable :: near(:)
-      integer :: i, n
+      integer :: i
 
       call find_chunks(crack%front, reach + merge(beyond, margin, resolve)*grid%lattice%size, &
-         grid, p, near)
-      allocate (samples(sum(p%count(near))))
+         grid, p, near, distance)
+      call fit_room(sum(p%count(near)), samples)
       if (resolve) then
          allocate (fields(lanes, n_fields, size(near)))
          do i = 1, size(near)
@@ -88,16 +90,28 @@ contains
       end if
       n = 0
       do i = 1, size(near)
+         if (i + 2 <= size(near)) call fetch_record(p, near(i + 2))
          if (resolve) then
-            call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, &
-               sided, loads, time, moving, samples, n, fields(:, :, i))
+            call sample_chunk(crack%front, number, reach, grid, p, near(i), distance(i), bodies, &
+               kernels, sided, loads, time, moving, samples, n, fields(:, :, i))
          else
-            call sample_chunk(crack%front, number, reach, grid, p, near(i), bodies, kernels, &
-               sided, loads, time, moving, samples, n)
+            call sample_chunk(crack%front, number, reach, grid, p, near(i), distance(i), bodies, &
+               kernels, sided, loads, time, moving, samples, n)
          end if
       end do
-      samples = samples(:n)
    end subroutine collect_samples
+
+   !> Room for n samples, with some to spare; what there is stays if it is enough.
+   pure subroutine fit_room(n, samples)
+      integer, intent(in) :: n
+      type(sample_t), allocatable, intent(inout) :: samples(:)
+
+      if (allocated(samples)) then
+         if (size(samples) >= n) return
+         deallocate (samples)
+      end if
+      allocate (samples(n + n/8))
+   end subroutine fit_room
 
    !> Stress, velocity and deformation gradient of the lanes of a chunk.
    pure subroutine read_fields(p, c, fields)
@@ -112,38 +126,50 @@ contains
    end subroutine read_fields
 
    !> The traced chunks whose bins are near a front.
-   pure subroutine find_chunks(front, reach, grid, p, near)
+   pure subroutine find_chunks(front, reach, grid, p, near, distance)
       type(front_t), intent(in) :: front
       real(wp), intent(in) :: reach            !! of the bins' middles [length]
       type(grid_t), intent(in) :: grid
       type(particles_t), intent(in) :: p
       integer, allocatable, intent(out) :: near(:)
+      real(wp), allocatable, intent(out) :: distance(:)   !! of the bins' middles [length]
+      real(wp) :: away(count(p%attached(:p%n_chunks) > 0))
       integer :: chosen(count(p%attached(:p%n_chunks) > 0)), c, n
       type(front_place_t) :: place
-      real(wp) :: centre(3)
 
       n = 0
       if (p%trace >= 0) then
          do c = 1, p%n_chunks
             if (p%attached(c) == 0) cycle
             if (p%count(c) == 0) cycle
-            centre = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) &
-               + 0.5_wp*grid%lattice%size
-            call nearest_on_front(front, centre, reach, place)
+            call nearest_on_front(front, middle_of_bin(grid, p, c), reach, place)
             if (place%edge == 0) cycle
             n = n + 1
             chosen(n) = c
+            away(n) = place%distance
          end do
       end if
       near = chosen(:n)
+      distance = away(:n)
    end subroutine find_chunks
 
+   !> Middle of the bin of a chunk.
+   pure function middle_of_bin(grid, p, c) result(middle)
+      type(grid_t), intent(in) :: grid
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: c
+      real(wp) :: middle(3)   !! [length]
+
+      middle = bin_corner(grid%lattice, bin_of_chunk(p, grid%blocks, c)) + 0.5_wp*grid%lattice%size
+   end function middle_of_bin
+
    !> Append the particles of one chunk, for which there is room.
-   subroutine sample_chunk(front, number, reach, grid, p, c, bodies, kernels, sided, loads, time, &
-         moving, samples, n, fields)
+   subroutine sample_chunk(front, number, reach, grid, p, c, distance, bodies, kernels, sided, &
+         loads, time, moving, samples, n, fields)
       type(front_t), intent(in) :: front
       integer, intent(in) :: number, c
       real(wp), intent(in) :: reach, time
+      real(wp), intent(in) :: distance                 !! of the middle of its bin [length]
       type(grid_t), intent(in) :: grid
       type(particles_t), intent(in) :: p
       type(bodies_t), intent(in) :: bodies
@@ -155,9 +181,12 @@ contains
       integer, intent(inout) :: n
       real(wp), intent(in), optional :: fields(:, :)   !! (8,18) instead of what particles carry
       real(wp) :: pull(lanes, 3), rate(lanes, 9), load(lanes, 3)
-      logical :: inside
+      type(front_place_t) :: places(lanes)
       integer :: i
 
+      call nearest_of_group(front, lanes, p%q(:, c_x:c_x + 2, c), middle_of_bin(grid, p, c), &
+         margin*grid%lattice%size, distance, reach, places)
+      if (all(places(:p%count(c))%edge == 0)) return
       call pull_and_rate(p, c, bodies%half(p%body(c)), kernels, sided, grid, moving, pull, &
          rate)
       do i = 1, size(loads)
@@ -165,17 +194,21 @@ contains
          pull = pull - load
       end do
       do i = 1, p%count(c)
+         if (places(i)%edge == 0) cycle
+         if (.not. is_traced_lane(p, c, i)) cycle
          associate (s => samples(n + 1))
-            call read_lane(p, c, i, number, s)
-            if (.not. any(abs(s%back) > 0)) cycle
-            call place_sample(front, reach, s, inside)
-            if (.not. inside) cycle
+            s%x = p%q(i, c_x:c_x + 2, c)
+            s%side = side_of_lane(p, c, i, number)
+            call put_sample(front, places(i), s)
+            call read_lane(p, c, i, s)
             if (present(fields)) then
                s%stress = fields(i, f_stress:f_stress + 5)
                s%v = fields(i, f_velocity:f_velocity + 2)
                s%back = rows_of(fields(i, f_deformation:f_deformation + 8))
             end if
             s%back = inverse(s%back)
+            s%lambda = 0
+            s%mu = 0
             select type (law => bodies%laws(bodies%law_of(p%body(c)))%law)
             type is (elastic_t)
                s%lambda = law%lambda
@@ -189,31 +222,43 @@ contains
       end do
    end subroutine sample_chunk
 
-   !> What a particle carries itself; `back` holds its deformation gradient, 0 where it is not
-   !> traced.
-   pure subroutine read_lane(p, c, lane, number, s)
+   !> Whether a particle of a chunk with a near record has a trace.
+   pure function is_traced_lane(p, c, lane) result(traced)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: c, lane
+      logical :: traced
+
+      traced = any(abs(p%near(lane, p%trace + trace_f:p%trace + trace_f + 8, p%attached(c))) > 0)
+   end function is_traced_lane
+
+   !> The side of a crack that a particle carries, 0 where it has none.
+   pure function side_of_lane(p, c, lane, number) result(side)
       type(particles_t), intent(in) :: p
       integer, intent(in) :: c, lane, number
-      type(sample_t), intent(out) :: s
-      real(wp) :: trace(n_trace), q(n_hot)
-      integer :: k, r
+      real(wp) :: side
+      integer :: k
+
+      side = 0
+      do k = 0, n_near*(p%slots - 1), n_near
+         if (nint(p%near(lane, k + near_crack, p%attached(c))) /= number) cycle
+         side = sign(1.0_wp, p%near(lane, k + near_psi, p%attached(c)))
+      end do
+   end function side_of_lane
+
+   !> What a traced particle carries itself; `back` holds its deformation gradient.
+   pure subroutine read_lane(p, c, lane, s)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: c, lane
+      type(sample_t), intent(inout) :: s
+      integer :: r
 
       r = p%attached(c)
-      trace = p%near(lane, p%trace + 1:p%trace + n_trace, r)
-      if (.not. any(abs(trace(trace_f:trace_f + 8)) > 0)) return
-      q = p%q(lane, :, c)
-      s%x = q(c_x:c_x + 2)
-      s%v = q(c_v:c_v + 2)
-      s%volume = q(c_vol)
-      s%density = q(c_m)/q(c_vol)
-      s%stress = q(c_s:c_s + 5)
-      s%work = trace(trace_work)/q(c_vol)
-      s%back = rows_of(trace(trace_f:trace_f + 8))
-      s%side = 0
-      do k = 0, n_near*(p%slots - 1), n_near
-         if (nint(p%near(lane, k + near_crack, r)) /= number) cycle
-         s%side = sign(1.0_wp, p%near(lane, k + near_psi, r))
-      end do
+      s%v = p%q(lane, c_v:c_v + 2, c)
+      s%volume = p%q(lane, c_vol, c)
+      s%density = p%q(lane, c_m, c)/s%volume
+      s%stress = p%q(lane, c_s:c_s + 5, c)
+      s%work = p%near(lane, p%trace + trace_work, r)/s%volume
+      s%back = rows_of(p%near(lane, p%trace + trace_f:p%trace + trace_f + 8, r))
    end subroutine read_lane
 
    !> A matrix from its rows one after the other.
@@ -226,18 +271,27 @@ contains
       a(3, :) = values(7:9)
    end function rows_of
 
-   !> Find the nearest point of the front; past its open ends the front goes on straight.
+   !> Find the nearest point of the front.
    pure subroutine place_sample(front, reach, s, inside)
       type(front_t), intent(in) :: front
       real(wp), intent(in) :: reach          !! [length]
       type(sample_t), intent(inout) :: s     !! x and side are known
       logical, intent(out) :: inside         !! within reach
       type(front_place_t) :: place
-      real(wp) :: t(3), d(3)
 
       call nearest_on_front(front, s%x, reach, place)
       inside = place%edge > 0
-      if (.not. inside) return
+      if (inside) call put_sample(front, place, s)
+   end subroutine place_sample
+
+   !> Place a sample by the nearest point of the front; past its open ends the front goes on
+   !> straight.
+   pure subroutine put_sample(front, place, s)
+      type(front_t), intent(in) :: front
+      type(front_place_t), intent(in) :: place   !! nearest to x
+      type(sample_t), intent(inout) :: s         !! x and side are known
+      real(wp) :: t(3), d(3)
+
       s%edge = place%edge
       d = s%x - place%point
       if (place%node > 0) then
@@ -248,9 +302,9 @@ contains
          end if
       end if
       s%foot = s%x - d
-      s%r = norm2(d)
+      s%r = sqrt(dot_product(d, d))
       s%away = unit_vector(d)
       if (abs(s%side) > 0) return
       s%side = sign(1.0_wp, dot_product(d, front%e2(:, front%edge_node(1, place%edge))))
-   end subroutine place_sample
+   end subroutine put_sample
 end module xmpm_samples

@@ -7,7 +7,7 @@ module xmpm_fetch_ahead
    implicit none
    private
 
-   public :: fetch_chunk, fetch_bin, fetch_traces, fetch_rows
+   public :: fetch_chunk, fetch_record, fetch_bin, fetch_traces, fetch_rows
 
 contains
 
@@ -33,6 +33,15 @@ contains
          c = p%next(c)
       end do
    end subroutine fetch_bin
+
+   !> All that a chunk with a near record holds but for first positions.
+   pure subroutine fetch_record(p, chunk)
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: chunk
+
+      call fetch_lines(p%q(1, 1, chunk), lanes*n_hot)
+      call fetch_lines(p%near(1, 1, p%attached(chunk)), lanes*size(p%near, 2))
+   end subroutine fetch_record
 
    !> Traces of all chunks of a bin.
    pure subroutine fetch_traces(p, first)

@@ -27,6 +27,7 @@ program test_fracture
    call start_parallel(comm)
    call refused()
    call through_crack()
+   call room_kept()
    call finish(suite)
    call stop_parallel(comm, 0)
 
@@ -90,4 +91,48 @@ contains
       end associate
       call check(suite, 'the grid serves the next step', m%mapped)
    end subroutine through_crack
+
+   !> The room for samples stays from one evaluation to the next: a smaller domain and then a larger
+   !> one have the values that they have by themselves.
+   subroutine room_kept()
+      type(deck_t) :: deck
+      type(model_t) :: m
+      type(error_t), allocatable :: error
+      real(wp), allocatable :: alone(:, :)
+      integer :: before
+
+      call make_model(comm, start//plate//slit//'*FRACTURE every = 1, radii = 3 4', deck, m, error)
+      call check_no_error(suite, 'the plate', error)
+      call measure_fronts(m)
+      associate (f => m%fracture)
+         alone = all_of(m)
+         before = size(f%room)
+         f%shape%radius = 0.7_wp*f%shape%radius
+         call measure_fronts(m)
+         call check(suite, 'fewer samples take the same room', size(f%room) == before)
+         call check(suite, 'another radius gives other values', any(abs(all_of(m) - alone) > 0))
+         f%shape%radius = [3.0_wp, 4.0_wp]
+         call measure_fronts(m)
+         call check(suite, 'what stood there before does not matter', &
+            .not. any(abs(all_of(m) - alone) > 0))
+         deallocate (f%room)
+         allocate (f%room(1))
+         call measure_fronts(m)
+         call check(suite, 'room that is too small is renewed', &
+            .not. any(abs(all_of(m) - alone) > 0))
+      end associate
+   end subroutine room_kept
+
+   !> J, K and T of all points.
+   function all_of(m) result(values)
+      type(model_t), intent(in) :: m
+      real(wp), allocatable :: values(:, :)
+
+      associate (v => m%fracture%values(1))
+         allocate (values(5, v%points%n))
+         values(1, :) = v%j
+         values(2:4, :) = v%k
+         values(5, :) = v%t
+      end associate
+   end function all_of
 end program test_fracture

@@ -6,8 +6,7 @@ program test_front
    use xmpm_surface, only: surface_t, build_surface, refresh_geometry
    use xmpm_crack_shapes, only: crack_plane_t, set_plane, make_rectangle, make_disc, make_sector
    use xmpm_front, only: front_t, front_place_t, front_test_points, mark_front, refresh_front, &
-      nearest_on_front, &
-      frame_on_front, vertex_phi, fully_cracked
+      nearest_on_front, nearest_of_group, frame_on_front, vertex_phi, fully_cracked
    use testing, only: suite_t, check, check_close, check_no_error, finish
    implicit none
    type(suite_t) :: suite
@@ -25,6 +24,7 @@ program test_front
    call annulus()
    call no_front()
    call nearest_by_plain_search()
+   call nearest_together()
    call moved()
    call uneven_rim()
    call finish(suite)
@@ -217,6 +217,40 @@ contains
       call nearest_on_front(front, [3.0_wp, 0.0_wp, 0.0_wp], 0.5_wp, place)
       call check(suite, 'beyond the reach nothing is near', place%edge == 0)
    end subroutine nearest_by_plain_search
+
+   !> Eight points in a ball at once: the same as one after the other; at the node between two
+   !> edges the lower number.
+   subroutine nearest_together()
+      type(front_place_t) :: places(8), place
+      real(wp) :: p(8, 3), middle(3), worst
+      integer :: i, k, wrong, found
+
+      worst = 0.0_wp
+      wrong = 0
+      found = 0
+      do i = 1, 300
+         middle = 1.2_wp*sin([1.0_wp, 2.3_wp, 3.7_wp]*real(i, wp))
+         if (i <= front%node_count) middle = 1.1_wp*front%x(:, i)
+         do k = 1, 8
+            p(k, :) = middle + 0.1_wp*sin([1.0_wp, 2.0_wp, 4.0_wp]*real(8*i + k, wp))
+         end do
+         p(1, :) = middle
+         call nearest_on_front(front, middle, 9.0_wp, place)
+         call nearest_of_group(front, 8, p, middle, 0.18_wp, place%distance, 0.5_wp, places)
+         do k = 1, 8
+            call nearest_on_front(front, p(k, :), 0.5_wp, place)
+            if (place%edge /= places(k)%edge .or. place%node /= places(k)%node) wrong = wrong + 1
+            if (place%edge == 0) cycle
+            found = found + 1
+            worst = max(worst, norm2(place%point - places(k)%point), &
+               abs(place%distance - places(k)%distance))
+         end do
+      end do
+      call check(suite, 'points together are near to the same edges and nodes', wrong == 0)
+      call check(suite, 'some of them are beyond the reach', found > 300 .and. found < 2100)
+      ! the same few operations: rounding
+      call check_close(suite, 'and to the same places', worst, 0.0_wp, 1.0e-15_wp, 0.0_wp)
+   end subroutine nearest_together
 
    pure function unit_matrix() result(unit)
       real(wp) :: unit(3, 3)
