@@ -8,10 +8,10 @@ module xmpm_front_meeting
    implicit none
    private
 
-   public :: find_meetings, ready_to_join, ready_to_close, chain_of
+   public :: find_meetings, ready_to_join, ready_to_close, chain_of, facing
 
-   real(wp), parameter :: facing = -0.3_wp   !! largest product of the directions ahead of two
-                                             !! fronts that meet
+   real(wp), parameter :: facing = 0.3_wp    !! largest product of the directions ahead of two
+                                             !! fronts that meet: each may lean by 53 degrees
    real(wp), parameter :: beside = -0.5_wp   !! the same of the direction ahead and that to the
                                              !! other front: fronts beside each other may have
                                              !! passed by a little

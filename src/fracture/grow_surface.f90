@@ -32,6 +32,8 @@ module xmpm_grow_surface
       type(mesh_quality_t) :: quality          !! of the new triangles
       logical, allocatable :: met(:)           !! (old nn) nodes that wait for another front of the
                                                !! crack
+      logical, allocatable :: held(:)          !! (old nn) nodes that stay because triangles that
+                                               !! come from them would be folded
       integer :: joined = 0                    !! pairs of fronts that were joined, and closed rests
    end type grown_t
 
@@ -43,13 +45,16 @@ module xmpm_grow_surface
       logical, allocatable :: through(:)       !! (chains) the rest ahead is cut at once
       integer, allocatable :: partner(:)       !! (nn) chain that a node has met
       integer, allocatable :: near(:)          !! (nn) chain that it is about to meet
+      logical, allocatable :: held(:)          !! (nn) nodes that wait for triangles that are sound
    end type plan_t
 
    integer, parameter :: smoothing = 3   !! passes over a new front; waves of four segments and
                                          !! less are then halved at least
    real(wp), parameter :: about = 1.5_wp !! times the distance at which fronts meet: so far their
                                          !! last nodes may be when the first have met
-   integer, parameter :: attempts = 6    !! lines that are tried before growth has failed
+   integer, parameter :: attempts = 8    !! lines that are tried before growth has failed
+   real(wp), parameter :: patience = 2.0_wp !! way that a node may have to go while it waits for
+                                         !! triangles that are sound [cells]
 
 contains
 
@@ -58,7 +63,8 @@ contains
    !> New vertices take the mean displacement of both faces from the front, without an opening.
    !> Nodes with less to go than `limits%least`, and those that wait, stay. What has left the
    !> material wholly, and the sides of the new strips, are no fronts any more. Where triangles
-   !> outside the material do not hold, their nodes stay.
+   !> outside the material do not hold, their nodes stay; where those inside would be folded, theirs
+   !> stay as well and go later, when their neighbours have gone.
    subroutine grow_surface(surface, front, advance, waits, limits, material, grown, error)
       type(surface_t), intent(in) :: surface             !! the crack
       type(front_t), intent(in) :: front                 !! its fronts
@@ -71,7 +77,7 @@ contains
       type(plan_t) :: plan
       type(draft_t) :: draft
       integer :: attempt
-      logical :: changed
+      logical :: changed, behind(front%node_count)
 
       call make_plan(front, advance, waits, limits, material, plan)
       do attempt = 1, attempts
@@ -80,12 +86,16 @@ contains
          if (allocated(error)) return
          call check_new_triangles(grown%surface, surface%triangle_count + 1, grown%quality, error)
          if (.not. allocated(error)) exit
-         call hold_outside(front, draft, surface%triangle_count, grown%quality%faulty, material, &
-            plan, changed)
+         behind = nodes_behind(draft, grown%quality%faulty, front%node_count)
+         call hold_outside(front, behind, material, plan, changed)
+         if (.not. changed .and. grown%quality%overlapping == 0) then
+            call hold_folded(front, behind, patience*limits%cell, plan, changed)
+         end if
          if (.not. changed .and. (grown%joined == 0 .or. attempt > 2)) return
       end do
       if (allocated(error)) return
       grown%met = plan%partner > 0
+      grown%held = plan%held
       grown%old_vertices = surface%vertex_count
       call move_alloc(draft%parent, grown%parent)
       call move_alloc(draft%share, grown%share)
@@ -115,6 +125,7 @@ contains
       end do
       plan%stays = waits .or. plan%partner > 0 .or. norm2(plan%advance, 1) < limits%least
       allocate (plan%turns(front%chain_count), source=.false.)
+      allocate (plan%held(front%node_count), source=.false.)
    end subroutine make_plan
 
    !> Draw the surface that a plan leads to.
@@ -194,37 +205,71 @@ contains
    !> Let the nodes outside that faulty triangles come from stay, and the ends of their fronts turn
    !> about the old ones: surface outside the material has nothing to cut. Nodes that are about to
    !> meet another front have met it.
-   subroutine hold_outside(front, draft, old_triangles, faulty, material, plan, changed)
+   subroutine hold_outside(front, behind, material, plan, changed)
       type(front_t), intent(in) :: front
-      type(draft_t), intent(in) :: draft
-      integer, intent(in) :: old_triangles
-      logical, intent(in) :: faulty(:)                 !! (new triangles)
+      logical, intent(in) :: behind(:)                 !! (nn) nodes that they come from
       class(material_test_t), intent(in) :: material
       type(plan_t), intent(inout) :: plan
       logical, intent(out) :: changed
-      integer :: chain(front%node_count), t, k, i, node
+      integer :: chain(front%node_count), node
 
       chain = chain_of(front)
       changed = .false.
+      do node = 1, front%node_count
+         if (.not. behind(node)) cycle
+         changed = changed .or. .not. plan%turns(chain(node))
+         plan%turns(chain(node)) = .true.
+         if (plan%stays(node)) cycle
+         if (plan%near(node) > 0) then
+            plan%partner(node) = plan%near(node)
+         else if (material%inside(front%x(:, node) + plan%advance(:, node)) .and. &
+                  material%inside(front%x(:, node))) then
+            cycle
+         end if
+         plan%stays(node) = .true.
+         changed = .true.
+      end do
+   end subroutine hold_outside
+
+   !> Let the nodes that folded triangles come from stay: those that go ahead, as all criteria want
+   !> it, and have no long way to go yet. Their neighbours go, and leave them another frame.
+   subroutine hold_folded(front, behind, longest, plan, changed)
+      type(front_t), intent(in) :: front
+      logical, intent(in) :: behind(:)      !! (nn) nodes that they come from
+      real(wp), intent(in) :: longest       !! way to go [length]
+      type(plan_t), intent(inout) :: plan
+      logical, intent(out) :: changed
+      integer :: node
+
+      changed = .false.
+      do node = 1, front%node_count
+         if (.not. behind(node) .or. plan%stays(node)) cycle
+         if (dot_product(plan%advance(:, node), front%e1(:, node)) <= 0) cycle
+         if (norm2(plan%advance(:, node)) > longest) cycle
+         plan%held(node) = .true.
+         plan%stays(node) = .true.
+         changed = .true.
+      end do
+   end subroutine hold_folded
+
+   !> Nodes of the old fronts that faulty triangles come from.
+   pure function nodes_behind(draft, faulty, n) result(behind)
+      type(draft_t), intent(in) :: draft
+      logical, intent(in) :: faulty(:)   !! (new triangles)
+      integer, intent(in) :: n           !! nodes of the old fronts
+      logical :: behind(n)
+      integer :: t, k, i, node, old
+
+      behind = .false.
+      old = size(draft%tri, 2) - size(faulty)
       do t = 1, size(faulty)
          if (.not. faulty(t)) cycle
          do k = 1, 3
             do i = 1, 2
-               node = draft%parent(i, draft%tri(k, old_triangles + t))
-               if (node == 0) cycle
-               changed = changed .or. .not. plan%turns(chain(node))
-               plan%turns(chain(node)) = .true.
-               if (plan%stays(node)) cycle
-               if (plan%near(node) > 0) then
-                  plan%partner(node) = plan%near(node)
-               else if (material%inside(front%x(:, node) + plan%advance(:, node)) .and. &
-                        material%inside(front%x(:, node))) then
-                  cycle
-               end if
-               plan%stays(node) = .true.
-               changed = .true.
+               node = draft%parent(i, draft%tri(k, old + t))
+               if (node > 0) behind(node) = .true.
             end do
          end do
       end do
-   end subroutine hold_outside
+   end function nodes_behind
 end module xmpm_grow_surface

@@ -54,6 +54,8 @@ module xmpm_growth
       real(wp), allocatable :: speed(:)               !! (nn) in the last step [length/time]
       logical, allocatable :: outside(:)              !! (nn) node without material around
       logical, allocatable :: waits(:)                !! (nn) node that a crack holds
+      real(wp), allocatable :: tried(:)               !! (nn) way at which triangles ahead of a node
+                                                      !! would have been folded [length]
       real(wp) :: energy = 0.0_wp                     !! integral of G dA so far [energy]
       real(wp) :: area = 0.0_wp                       !! area gone so far [length**2]
       integer :: increments = 0                       !! re-meshings so far
@@ -74,7 +76,7 @@ contains
       allocate (growth%k(3, n), growth%k_twice(3, n), growth%rate(n), growth%kink(n), &
          growth%twist(n), growth%intensity(n), &
          growth%toughness(n), growth%rayleigh(n), growth%dilatational(n), growth%speed(n), &
-         source=0.0_wp)
+         growth%tried(n), source=0.0_wp)
       allocate (growth%outside(n), growth%waits(n), source=.false.)
       growth%ended = crack%front%edge_count == 0
       if (.not. allocated(growth%news)) allocate (growth%news(0))
@@ -215,7 +217,8 @@ contains
       end do
    end subroutine note_energy
 
-   !> Whether a node has gone an increment, or at a sharp turn a part of one.
+   !> Whether a node has gone an increment, or at a sharp turn a part of one, also since its
+   !> triangles were tried in vain.
    pure function is_due(growth, crack) result(due)
       type(growth_t), intent(in) :: growth
       type(crack_t), intent(in) :: crack
@@ -228,7 +231,8 @@ contains
          if (growth%outside(i) .or. growth%waits(i)) cycle
          part = max(shortest_part, min(1.0_wp, sharp_turn/max(abs(growth%kink(i)), sharp_turn)))
          ! A step may end short of the increment by rounding.
-         due = due .or. crack%offset(i) >= part*growth%increment*(1.0_wp - 1.0e-9_wp)
+         due = due .or. crack%offset(i) - growth%tried(i) >= part*growth%increment &
+            *(1.0_wp - 1.0e-9_wp)
       end do
    end function is_due
 
@@ -267,11 +271,12 @@ contains
       deallocate (growth%k, growth%k_twice, growth%rate, growth%kink, growth%twist, &
          growth%intensity, &
          growth%toughness, &
-         growth%rayleigh, growth%dilatational, growth%speed, growth%outside, growth%waits)
+         growth%rayleigh, growth%dilatational, growth%speed, growth%tried, growth%outside, &
+         growth%waits)
       allocate (growth%k(3, n), growth%k_twice(3, n), growth%rate(n), growth%kink(n), &
          growth%twist(n), growth%intensity(n), &
          growth%toughness(n), growth%rayleigh(n), growth%dilatational(n), growth%speed(n), &
-         offset(n), source=0.0_wp)
+         growth%tried(n), offset(n), source=0.0_wp)
       allocate (growth%outside(n), growth%waits(n), source=.false.)
       do i = 1, n
          v = grown%front%vertex(i)
@@ -291,6 +296,7 @@ contains
          offset(i) = old(a)
          growth%kink(i) = before%kink(a)
          growth%twist(i) = before%twist(a)
+         growth%tried(i) = merge(old(a), before%tried(a), grown%held(a))
          growth%waits(i) = before%waits(a) .or. grown%met(a)
       end do
       growth%increments = growth%increments + 1

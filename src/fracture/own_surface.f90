@@ -4,6 +4,7 @@ module xmpm_own_surface
    use xmpm_surface, only: surface_t
    use xmpm_surface_index, only: nearest_in_triangle
    use xmpm_front, only: front_t
+   use xmpm_front_meeting, only: facing
    implicit none
    private
 
@@ -12,8 +13,6 @@ module xmpm_own_surface
    real(wp), parameter :: clear = 1.0_wp     !! nearer to the surface a front does not go [cells]
    real(wp), parameter :: around = 3.0_wp    !! what is connected with a node so far from it is the
                                              !! surface that it belongs to [cells]
-   real(wp), parameter :: facing = -0.3_wp   !! largest product of the directions ahead of fronts
-                                             !! that meet face to face
    real(wp), parameter :: rim = 0.25_wp      !! nearer to a front a place is at the front [cells]
 
 contains

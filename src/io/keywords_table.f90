@@ -386,6 +386,9 @@ contains
          meaning='time over which K is averaged; 3.5 cells at the fastest wave where not given'))
       call add_key(t, key_t(name='every', dimension='time', range=positive, &
          meaning='interval of K for the law; 0.5 cells at the fastest wave where not given'))
+      call add_key(t, key_t(name='meeting', dimension='length', range=positive, &
+         meaning='fronts of a crack that face each other nearer than this are joined; '// &
+         'twice the largest radius where not given'))
       call add_key(t, key_t(name='toughness', dimension='toughness', range=positive, &
          meaning='K_Ic for these cracks in all bodies, instead of those of the materials'))
       call add_key(t, key_t(name='region', least=7, most=7, repeatable=.true., &

@@ -172,7 +172,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(occupancy_t) :: material
       type(grown_t) :: grown
-      real(wp), allocatable :: advance(:, :), offset(:)
+      real(wp), allocatable :: advance(:, :), offset(:), x(:, :)
       integer :: c
       logical :: only_ahead
 
@@ -191,9 +191,10 @@ contains
       ! What was cut where a front ended or two have met is not near any front.
       only_ahead = grown%joined == 0 .and. &
          grown%front%chain_count == m%cracks(c)%front%chain_count
+      x = m%cracks(c)%front%x
       call renew_growth(m%growth(g), grown, m%cracks(c)%offset, offset)
       call replace_surface(m%cracks(c), grown%surface, grown%front, offset, m%comm%rank, m%grid)
-      call tell(m, g, grown)
+      call tell(m, g, grown, x)
       call know_nodes(m, g, error)
       if (allocated(error)) return
       call trace_ahead(m, c)
@@ -289,12 +290,15 @@ contains
    end subroutine know_nodes
 
    !> What the log should hear of a growth.
-   subroutine tell(m, g, grown)
+   subroutine tell(m, g, grown, x)
       type(model_t), intent(inout) :: m
       integer, intent(in) :: g
       type(grown_t), intent(in) :: grown
+      real(wp), intent(in) :: x(:, :)   !! (3,nn) nodes before it [length]
 
       if (grown%joined > 0) call add_news(m, g, 'two of its fronts met and were joined')
+      if (any(grown%held)) call add_news(m, g, 'waits at '// &
+         to_text(x(:, findloc(grown%held, .true., 1)))//': its new triangles would be folded')
       if (m%growth(g)%ended) call add_news(m, g, &
          'no front is left: it has cut the body through '// &
          'or left it')

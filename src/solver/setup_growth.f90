@@ -1,7 +1,7 @@
 !> Growth from the deck: which cracks, criterion, speed law, increments, toughness.
 module xmpm_setup_growth
    use xmpm_kinds, only: wp
-   use xmpm_text, only: string_t, lower
+   use xmpm_text, only: string_t, lower, to_text
    use xmpm_error, only: error_t
    use xmpm_deck, only: deck_t, block_t, count_blocks, find_block, block_named, has, real_of, &
       reals_of, text_of, texts_of, complain
@@ -86,10 +86,7 @@ contains
       call choose_law(block, growth)
       call read_toughness(deck, block, growth)
       call check_fracture(m, deck, block, growth)
-      ! Where the domains of two fronts touch, K is that of neither alone.
-      if (growth%needs_intensity .and. allocated(m%fracture%shape%radius)) then
-         growth%limits%meeting = max(growth%limits%meeting, 2*maxval(m%fracture%shape%radius))
-      end if
+      call choose_meeting(m, deck, block, growth)
       call start_growth(growth, m%cracks(crack))
       m%growth = [m%growth, growth]
       call know_nodes(m, size(m%growth), failure)
@@ -175,6 +172,27 @@ contains
          end associate
       end do
    end subroutine read_toughness
+
+   !> How near fronts must come to be joined: as the deck says, no nearer than a strip between can
+   !> be drawn; else where their domains touch, since K is then that of neither alone.
+   subroutine choose_meeting(m, deck, block, growth)
+      type(model_t), intent(in) :: m
+      type(deck_t), intent(inout) :: deck
+      type(block_t), intent(in) :: block
+      type(growth_t), intent(inout) :: growth
+
+      associate (meeting => growth%limits%meeting)
+         if (has(block, 'meeting')) then
+            if (real_of(block, 'meeting') < meeting) then
+               call complain(deck, block, 'meeting', 'no strip can be drawn so near: at least '// &
+                  to_text(meeting)//', two increments and half a cell')
+            end if
+            meeting = real_of(block, 'meeting')
+         else if (growth%needs_intensity .and. allocated(m%fracture%shape%radius)) then
+            meeting = max(meeting, 2*maxval(m%fracture%shape%radius))
+         end if
+      end associate
+   end subroutine choose_meeting
 
    !> A crack whose growth asks for K must be one whose fracture parameters are found.
    subroutine check_fracture(m, deck, block, growth)

@@ -29,12 +29,14 @@ contains
          '*GROWTH cracks=SLIT, criterion=straight, law=position, table=0 0 1 2 3 2')
       call takes('eq. 60 with a toughness of its own and a region', looked// &
          '*GROWTH toughness=20, region=0 0 0 1 1 1 30, increment=2')
+      call takes('a distance of fronts that meet', looked//'*GROWTH toughness=20, meeting=3')
       call takes('a table of K_ID', looked//'*GROWTH law=table, table=0 10 100 20')
    end subroutine accepts
 
    subroutine refuses()
       call blames('an increment below 0.1', told//', speed=3, increment=0.05', 'increment')
       call blames('an increment above 2', told//', speed=3, increment=2.5', 'increment')
+      call blames('fronts that meet at no distance', told//', speed=3, meeting=0', 'meeting')
       call blames('a crack that is not there', told//', speed=3, cracks=slat', "no *CRACK 'slat'")
       call blames('a law without its speed', told, "law = speed needs 'speed'")
       call blames('a law without its table', looked//'*GROWTH law=table', &

@@ -9,6 +9,7 @@ program test_grow_surface
    use xmpm_front, only: front_t
    use xmpm_front_line, only: front_limits_t, limits_for
    use xmpm_mesh_check, only: triangles_overlap
+   use xmpm_front_meeting, only: find_meetings
    use xmpm_front_search, only: find_front
    use xmpm_grow_surface, only: grown_t, grow_surface
    use growing_surface, only: tube_t, make_cut, grow_cut
@@ -34,6 +35,8 @@ program test_grow_surface
    call fronts_meet_in_a_tube()
    call ring_closes()
    call motion_of_new_vertices()
+   call folds_wait()
+   call fronts_that_lean_meet()
    call faults_are_found()
    call overlaps()
    call finish(suite)
@@ -211,10 +214,7 @@ contains
       integer :: i
       real(wp) :: way(3), area
 
-      body = tube_t()
-      body%y = [-4.3_wp, 4.3_wp]
-      call start_rectangle([10.0_wp, 9.0_wp], [0.0_wp, 0.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], &
-         [0.0_wp, 1.0_wp, 0.0_wp])
+      call start_cut()
       area = surface_area(surface)
       call grow_by(ahead(0.5_wp, pi/3))
       call check_no_error(suite, 'a front turns by 60 degrees', error)
@@ -418,6 +418,77 @@ contains
          - up)), 0.0_wp, 0.0_wp, 0.0_wp)
       call check(suite, 'new vertices name their parents', all(grown%parent(:, nv + 1:) > 0))
    end subroutine motion_of_new_vertices
+
+   !> One half of a front wants to turn up by 88 degrees, the other down: the triangles between
+   !> them would be folded, so that their nodes stay, with their way, and go later. A node that has
+   !> waited too long is a fault.
+   subroutine folds_wait()
+      type(front_limits_t) :: hasty
+      real(wp), allocatable :: before(:, :)
+      integer :: i
+
+      call start_cut()
+      before = front%x
+      call grow_by(torn())
+      call check_no_error(suite, 'a front is torn up and down', error)
+      if (allocated(error)) return
+      call check(suite, 'the two nodes at the tear of both fronts stay', count(grown%held) == 4)
+      call check(suite, 'they are where they were', all([(minval(norm2(front%x &
+         - spread(before(:, i), 2, front%node_count), 1)) < tiny(1.0_wp), i=1, &
+         size(grown%held))] .eqv. grown%held))
+      call check(suite, 'no fold of more than 120 degrees', grown%quality%sharpest_fold < 2*pi/3)
+      call grow_by(ahead(0.5_wp, 0.0_wp))
+      call check_no_error(suite, 'straight on they go', error)
+      if (allocated(error)) return
+      call check(suite, 'and none stays', .not. any(grown%held))
+      call start_cut()
+      hasty = limits
+      hasty%cell = 0.2_wp
+      call grow_cut(torn(), hasty, body, surface, front, grown, error)
+      call check_error(suite, 'after two cells it is a fault', error, 'folded')
+   end subroutine folds_wait
+
+   !> Two fronts 10 apart that come towards each other, each leaning by an angle to the same side:
+   !> they meet at 45 degrees, where one has passed the other at one side of a wall before the other
+   !> side, and do not at 60; nor do those further apart than the distance.
+   subroutine fronts_that_lean_meet()
+      call start_cut()
+      front%x(1, :) = -front%x(1, :)
+      call check(suite, 'fronts face to face meet', all(met(0.0_wp, 10.1_wp)))
+      call check(suite, 'not from afar', .not. any(met(0.0_wp, 9.9_wp)))
+      call check(suite, 'those that lean by 45 degrees do', all(met(pi/4, 10.1_wp)))
+      call check(suite, 'those that lean by 60 degrees do not', .not. any(met(pi/3, 10.1_wp)))
+   end subroutine fronts_that_lean_meet
+
+   !> Which nodes meet the other front, if it leans by an angle.
+   function met(lean, reach) result(is)
+      real(wp), intent(in) :: lean, reach
+      logical, allocatable :: is(:)
+      integer :: partner(front%node_count)
+      type(front_t) :: leaning
+
+      leaning = front
+      leaning%e1(1, :) = sign(cos(lean), front%e1(1, :))
+      leaning%e1(2, :) = sin(lean)
+      call find_meetings(leaning, reach, partner)
+      is = partner > 0
+   end function met
+
+   !> A rectangle with a front at both ends of x.
+   subroutine start_cut()
+      body = tube_t()
+      body%y = [-4.3_wp, 4.3_wp]
+      call start_rectangle([10.0_wp, 9.0_wp], [0.0_wp, 0.0_wp, 0.0_wp], [1.0_wp, 0.0_wp, 0.0_wp], &
+         [0.0_wp, 1.0_wp, 0.0_wp])
+   end subroutine start_cut
+
+   !> Ways of 0.45, up on one half of the fronts and down on the other.
+   function torn() result(advance)
+      real(wp), allocatable :: advance(:, :)
+
+      advance = ahead(0.45_wp, 0.49_wp*pi)
+      where (spread(front%x(2, :) > 0.1_wp, 1, 3)) advance = ahead(0.45_wp, -0.49_wp*pi)
+   end function torn
 
    !> A front that turns back on itself, and two limbs that run into each other.
    subroutine faults_are_found()

@@ -26,6 +26,7 @@ program test_growth
    call increment_waits_for_the_way()
    call energy_is_rate_times_area()
    call kinks_turn_and_shorten()
+   call folds_are_tried_again()
    call filter_does_not_lag()
    call rest_takes_intensity_as_it_is()
    call outside_follows_inside()
@@ -129,6 +130,36 @@ contains
       growth%kink = 0
       call check(suite, 'straight on it is not', .not. is_due(growth, crack))
    end subroutine kinks_turn_and_shorten
+
+   !> Nodes whose triangles would have been folded keep their way, and are due again when they have
+   !> gone another increment.
+   subroutine folds_are_tried_again()
+      type(error_t), allocatable :: error
+      type(everywhere_t) :: body
+      type(grown_t) :: grown
+      real(wp), allocatable :: offset(:)
+
+      call fresh_disc()
+      call advance_fronts(growth, crack, 0.0_wp, 0.25_wp)
+      call check(suite, 'the way of an increment is due', is_due(growth, crack))
+      growth%waits(:3) = .true.
+      call grow_surface(crack%surface, crack%front, growth_vectors(growth, crack), &
+         growth%waits, growth%limits, body, grown, error)
+      call check_no_error(suite, 'a disc grows but at three nodes', error)
+      grown%held(:3) = .true.
+      growth%waits = .false.
+      call renew_growth(growth, grown, crack%offset, offset)
+      call check(suite, 'three nodes have kept their way', count(abs(offset - 0.5_wp) < tight) &
+         == 3 .and. count(abs(offset) < tight) == size(offset) - 3)
+      crack%surface = grown%surface
+      crack%front = grown%front
+      crack%offset = offset
+      call check(suite, 'they are not due at once', .not. is_due(growth, crack))
+      call advance_fronts(growth, crack, 0.25_wp, 0.24_wp)
+      call check(suite, 'nor before another increment', .not. is_due(growth, crack))
+      call advance_fronts(growth, crack, 0.49_wp, 0.01_wp)
+      call check(suite, 'but then', is_due(growth, crack))
+   end subroutine folds_are_tried_again
 
    !> K that rises steadily is followed without a lag; noise is damped.
    subroutine filter_does_not_lag()

@@ -21,6 +21,8 @@ refused "enters a body without a toughness at" 's/centre = -8 0 0/centre = -1 0 
 refused "the crack 'slit' grows already by another *GROWTH" \
    's/^\*GROWTH.*/*GROWTH cracks = slit\n*GROWTH cracks = slit/'
 
+refused "no strip can be drawn so near: at least 1.5" 's/^\*GROWTH.*/*GROWTH cracks = slit, meeting = 1.4/'
+
 # stopped NAME TEXT...: the run ends with exit code 3 and these texts.
 stopped() {
    mkdir -p "$1"
