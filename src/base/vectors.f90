@@ -46,6 +46,6 @@ contains
       b(1, :) = cross(a(:, 2), a(:, 3))
       b(2, :) = cross(a(:, 3), a(:, 1))
       b(3, :) = cross(a(:, 1), a(:, 2))
-      b = b/dot_product(a(:, 1), b(1, :))
+      b = b*(1/dot_product(a(:, 1), b(1, :)))
    end function inverse
 end module xmpm_vectors

@@ -14,7 +14,8 @@ module xmpm_contour_integral
    use xmpm_front, only: front_t
    use xmpm_samples, only: sample_t
    use xmpm_front_points, only: front_points_t, window_at
-   use xmpm_domain_integral, only: domain_shape_t, points_near, full
+   use xmpm_domain_integral, only: domain_shape_t, within, full
+   use xmpm_edge_points, only: edge_points_t, list_edge_points
    use xmpm_moving_least_squares, only: monomials, fit_weight, add_moments, fit_coefficients, &
       n_monomials, n_moments
    implicit none
@@ -59,15 +60,15 @@ contains
       type(front_points_t), intent(in) :: points
       type(domain_shape_t), intent(in) :: shape
       type(contour_sums_t), intent(inout) :: sums
-      integer, allocatable :: near(:)
+      type(edge_points_t), allocatable :: near(:)
       real(wp) :: d(3)
-      integer :: i, k, n, m, r
+      integer :: i, k, m, r
 
-      allocate (near(points%n))
+      call list_edge_points(front, points, shape%reach + sums%support, near)
       do i = 1, size(samples)
-         call points_near(front, points, samples(i), shape%reach + sums%support, near, n)
-         do k = 1, n
-            m = near(k)
+         do k = 1, size(near(samples(i)%edge)%point)
+            m = near(samples(i)%edge)%point(k)
+            if (.not. within(samples(i)%foot, points%x(:, m), shape%reach + sums%support)) cycle
             d = matmul(samples(i)%x - points%x(:, m), points%frame(:, :, m))
             do r = 1, size(shape%radius)
                if (.not. touches(d, shape%radius(r), sums%support)) cycle
@@ -147,14 +148,15 @@ contains
       type(domain_shape_t), intent(in) :: shape
       real(wp), intent(in) :: drift(:, :)        !! (3,n) velocity of the material [length/time]
       type(contour_sums_t), intent(inout) :: sums
-      integer, allocatable :: near(:)
-      integer :: i, k, n
+      type(edge_points_t), allocatable :: near(:)
+      integer :: i, k, m
 
-      allocate (near(points%n))
+      call list_edge_points(front, points, shape%reach + sums%support, near)
       do i = 1, size(samples)
-         call points_near(front, points, samples(i), shape%reach + sums%support, near, n)
-         do k = 1, n
-            call add_sample(samples(i), points, near(k), shape, drift(:, near(k)), sums)
+         do k = 1, size(near(samples(i)%edge)%point)
+            m = near(samples(i)%edge)%point(k)
+            if (.not. within(samples(i)%foot, points%x(:, m), shape%reach + sums%support)) cycle
+            call add_sample(samples(i), points, m, shape, drift(:, m), sums)
          end do
       end do
    end subroutine sum_circles

@@ -14,16 +14,16 @@
 module xmpm_domain_integral
    use xmpm_kinds, only: wp, pi
    use xmpm_front, only: front_t
-   use xmpm_storage, only: lanes
    use xmpm_samples, only: sample_t
    use xmpm_cosine_fall, only: cosine_fall
    use xmpm_front_points, only: front_points_t, window_at, direction_at, same_part
-   use xmpm_domain_lanes, only: view_t, look, aim, flux_along, strain_along
+   use xmpm_edge_points, only: edge_points_t, list_edge_points
+   use xmpm_domain_lanes, only: width, view_t, look, aim, flux_along, strain_along
    implicit none
    private
 
    public :: domain_sums_t, domain_shape_t, sum_domains, plateau_area, clear_sums
-   public :: points_near, sees, profile, full
+   public :: list_same_part, sees, within, profile, full
 
    !> The field q.
    type :: domain_shape_t
@@ -50,16 +50,16 @@ module xmpm_domain_integral
    !> Samples that wait for a point to see them.
    type :: batch_t
       integer :: n = 0
-      integer :: sample(lanes) = 0
+      integer :: sample(width) = 0
    end type batch_t
 
    !> Along e3, in all lanes.
-   real(wp), parameter :: along_front(lanes, 3) = spread([0.0_wp, 0.0_wp, 1.0_wp], 1, lanes)
+   real(wp), parameter :: along_front(width, 3) = spread([0.0_wp, 0.0_wp, 1.0_wp], 1, width)
 
    !> Sums of one point in lanes.
    type :: lane_sums_t
-      real(wp), allocatable :: part(:, :, :)   !! (lanes,6,nr) J, four interactions, volume
-      real(wp) :: mean(lanes, 9) = 0           !! material (4), along (5)
+      real(wp), allocatable :: part(:, :, :)   !! (width,6,nr) J, four interactions, volume
+      real(wp) :: mean(width, 9) = 0           !! material (4), along (5)
    end type lane_sums_t
 
 contains
@@ -84,22 +84,26 @@ contains
       type(domain_sums_t), intent(inout) :: sums
       type(batch_t) :: batch(points%n)
       type(lane_sums_t) :: lane_sums(points%n)
-      real(wp) :: reach
-      integer :: near(points%n), i, k, n, m
+      type(edge_points_t), allocatable :: near(:)
+      real(wp) :: x(3, points%n), e3(3, points%n), largest
+      integer :: i, k, m, edge
 
-      reach = maxval(shape%radius)
+      x = points%x
+      e3 = points%frame(:, 3, :)
+      largest = maxval(shape%radius)
+      call list_same_part(front, points, shape%reach, near)
       do m = 1, points%n
-         allocate (lane_sums(m)%part(lanes, 6, size(shape%radius)), source=0.0_wp)
+         allocate (lane_sums(m)%part(width, 6, size(shape%radius)), source=0.0_wp)
       end do
       do i = 1, size(samples)
-         if (samples(i)%r >= reach) cycle
-         call points_near(front, points, samples(i), shape%reach, near, n)
-         do k = 1, n
-            m = near(k)
-            if (.not. sees(front, points, m, shape%half_width, samples(i))) cycle
+         if (samples(i)%r >= largest) cycle
+         edge = samples(i)%edge
+         do k = 1, size(near(edge)%point)
+            m = near(edge)%point(k)
+            if (.not. sees(x(:, m), e3(:, m), shape, samples(i))) cycle
             batch(m)%n = batch(m)%n + 1
             batch(m)%sample(batch(m)%n) = i
-            if (batch(m)%n < lanes) cycle
+            if (batch(m)%n < width) cycle
             call add_batch(samples, batch(m)%sample, points, m, shape, speed(m), drift(:, m), &
                lane_sums(m))
             batch(m)%n = 0
@@ -112,20 +116,41 @@ contains
       end do
    end subroutine sum_domains
 
-   !> Whether a sample is in the window of a point and belongs to its part of the front.
-   pure function sees(front, points, m, half_width, s)
+   !> Points within reach of each edge that look at the part of the front to which it belongs.
+   pure subroutine list_same_part(front, points, reach, near)
       type(front_t), intent(in) :: front
       type(front_points_t), intent(in) :: points
-      integer, intent(in) :: m                !! point
-      real(wp), intent(in) :: half_width      !! of the window [length]
+      real(wp), intent(in) :: reach                               !! [length]
+      type(edge_points_t), allocatable, intent(out) :: near(:)    !! (edges)
+      integer, allocatable :: list(:)
+      integer :: edge, k
+
+      call list_edge_points(front, points, reach, near)
+      do edge = 1, size(near)
+         list = near(edge)%point
+         near(edge)%point = pack(list, [(same_part(front, points, list(k), edge), k=1, size(list))])
+      end do
+   end subroutine list_same_part
+
+   !> Whether a sample is in the window of a point, and its part of the front within reach.
+   pure function sees(x, e3, shape, s)
+      real(wp), intent(in) :: x(3), e3(3)     !! the point and the front's direction there
+      type(domain_shape_t), intent(in) :: shape
       type(sample_t), intent(in) :: s
       logical :: sees
 
-      sees = abs((s%x(1) - points%x(1, m))*points%frame(1, 3, m) &
-         + (s%x(2) - points%x(2, m))*points%frame(2, 3, m) &
-         + (s%x(3) - points%x(3, m))*points%frame(3, 3, m)) < half_width
-      if (sees) sees = same_part(front, points, m, s%edge)
+      sees = abs((s%x(1) - x(1))*e3(1) + (s%x(2) - x(2))*e3(2) + (s%x(3) - x(3))*e3(3)) &
+         < shape%half_width
+      if (sees) sees = within(x, s%foot, shape%reach)
    end function sees
+
+   !> Whether two places are within reach of each other.
+   pure function within(a, b, reach)
+      real(wp), intent(in) :: a(3), b(3), reach   !! [length]
+      logical :: within
+
+      within = (a(1) - b(1))**2 + (a(2) - b(2))**2 + (a(3) - b(3))**2 <= reach*reach
+   end function within
 
    !> Sums over the lanes of one point.
    pure subroutine add_lane_sums(lane_sums, m, sums)
@@ -142,38 +167,6 @@ contains
       sums%along(:, m) = sums%along(:, m) + sum(lane_sums%mean(:, 5:), dim=1)
    end subroutine add_lane_sums
 
-   !> Points within reach of a sample's place on the front, along the front to both sides.
-   pure subroutine points_near(front, points, s, reach, near, n)
-      type(front_t), intent(in) :: front
-      type(front_points_t), intent(in) :: points
-      type(sample_t), intent(in) :: s
-      real(wp), intent(in) :: reach          !! [length]
-      integer, intent(inout) :: near(:)      !! filled up to n
-      integer, intent(out) :: n
-      real(wp) :: d(3)
-      integer :: node, edge, way
-
-      n = 0
-      do way = 2, 1, -1
-         node = front%edge_node(way, s%edge)
-         do while (n < size(near))
-            d = s%foot - points%x(:, node)
-            if (d(1)*d(1) + d(2)*d(2) + d(3)*d(3) > reach*reach) exit
-            if (n > 0) then
-               if (node == near(1) .and. way == 2) return
-               if (way == 1 .and. front%closed(points%chain(node))) then
-                  if (any(near(:n) == node)) return
-               end if
-            end if
-            n = n + 1
-            near(n) = node
-            edge = front%node_edge(way, node)
-            if (edge == 0) exit
-            node = front%edge_node(way, edge)
-         end do
-      end do
-   end subroutine points_near
-
    !> Add samples to one point.
    pure subroutine add_batch(samples, chosen, points, m, shape, speed, drift, lane_sums)
       type(sample_t), intent(in) :: samples(:)
@@ -184,13 +177,13 @@ contains
       real(wp), intent(in) :: speed, drift(3)
       type(lane_sums_t), intent(inout) :: lane_sums
       type(view_t) :: view
-      real(wp) :: across(lanes, 5), rest(lanes, 6), l(lanes), slope(lanes), fade(lanes)
-      real(wp) :: direction(lanes, 3)
+      real(wp) :: across(width, 5), rest(width, 6), l(width), slope(width), fade(width)
+      real(wp) :: direction(width, 3)
       integer :: k
 
       call look(samples, chosen, points, m, view)
-      call window_at(lanes, view%d(:, 3), shape%half_width, l, slope)
-      call direction_at(lanes, points, m, view%d, shape%half_width, direction, fade)
+      call window_at(width, view%d(:, 3), shape%half_width, l, slope)
+      call direction_at(width, points, m, view%d, shape%half_width, direction, fade)
       rest = 0
       if (any(abs(fade) > 0)) then
          do k = 1, 3
@@ -223,13 +216,13 @@ contains
 
    !> Add what counts within one radius.
    pure subroutine add_radius(r, inner, outer, across, rest, part)
-      real(wp), intent(in) :: r(lanes), inner, outer          !! [length]
-      real(wp), intent(in) :: across(lanes, 5), rest(lanes, 6)
-      real(wp), intent(inout) :: part(lanes, 6)
-      real(wp) :: w(lanes), dw(lanes)
+      real(wp), intent(in) :: r(width), inner, outer          !! [length]
+      real(wp), intent(in) :: across(width, 5), rest(width, 6)
+      real(wp), intent(inout) :: part(width, 6)
+      real(wp) :: w(width), dw(width)
       integer :: k
 
-      call profile(lanes, r, inner, outer, w, dw)
+      call profile(width, r, inner, outer, w, dw)
       do k = 1, 5
          part(:, k) = part(:, k) + dw*across(:, k) + w*rest(:, k)
       end do
@@ -241,9 +234,9 @@ contains
       type(view_t), intent(in) :: view
       type(front_points_t), intent(in) :: points
       integer, intent(in) :: m
-      real(wp), intent(in) :: inner, l(lanes)
-      real(wp), intent(inout) :: along(lanes, 5)
-      real(wp) :: products(lanes, 5), inside(lanes)
+      real(wp), intent(in) :: inner, l(width)
+      real(wp), intent(inout) :: along(width, 5)
+      real(wp) :: products(width, 5), inside(width)
       integer :: k
 
       if (.not. minval(view%r) < inner) return

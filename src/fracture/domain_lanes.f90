@@ -2,34 +2,36 @@
 !> them: what is in the lanes of an array is in the frame of the point.
 module xmpm_domain_lanes
    use xmpm_kinds, only: wp
-   use xmpm_storage, only: lanes
    use xmpm_samples, only: sample_t
    use xmpm_front_points, only: front_points_t
    use xmpm_near_tip, only: unit_states
    implicit none
    private
 
-   public :: view_t, look, aim, flux_along, strain_along
+   public :: width, view_t, look, aim, flux_along, strain_along
+
+   integer, parameter :: width = 16   !! lanes: two vectors of 8, so that one need not wait for its
+                                      !! own roots and series
 
    !> Samples in the lanes. Directions of q have no part along e2.
    type :: view_t
-      real(wp) :: d(lanes, 3)          !! place [length]
-      real(wp) :: r(lanes)             !! distance from the front [length]
-      real(wp) :: away(lanes, 3)       !! unit vector from the front
-      real(wp) :: stress(lanes, 6)     !! 11 22 33 12 23 13 [stress]
-      real(wp) :: strain(lanes, 6)     !! that goes with it, 12 23 13 twice
-      real(wp) :: pull(lanes, 3)       !! force of the divergence of stress [force]
-      real(wp) :: work(lanes)          !! stress work [stress]
-      real(wp) :: back(lanes, 3, 3)    !! inverse of the deformation gradient, in space
-      real(wp) :: volume(lanes)        !! [length^3], 0 in lanes without a sample
-      real(wp) :: poisson(lanes)       !! Poisson's ratio
-      real(wp) :: mean(lanes, 4)       !! volume, and it times lambda, mu, density
-      real(wp) :: plane(lanes, 6, 3)   !! 11 22 33 12, u_1,1 u_2,1 of modes I, II, a line force
-      real(wp) :: shear(lanes, 3)      !! 23 13, u_3,1 of mode III
-      real(wp) :: g(lanes, 3)          !! direction of q
-      real(wp) :: h(lanes, 3)          !! u_i,k g_k
-      real(wp) :: energy(lanes)        !! of stress work and relative motion [stress]
-      real(wp) :: source(lanes, 5)     !! of J, of interactions I to III and force [force, force/K]
+      real(wp) :: d(width, 3)          !! place [length]
+      real(wp) :: r(width)             !! distance from the front [length]
+      real(wp) :: away(width, 3)       !! unit vector from the front
+      real(wp) :: stress(width, 6)     !! 11 22 33 12 23 13 [stress]
+      real(wp) :: strain(width, 6)     !! that goes with it, 12 23 13 twice
+      real(wp) :: pull(width, 3)       !! force of the divergence of stress [force]
+      real(wp) :: work(width)          !! stress work [stress]
+      real(wp) :: back(width, 3, 3)    !! inverse of the deformation gradient, in space
+      real(wp) :: volume(width)        !! [length^3], 0 in lanes without a sample
+      real(wp) :: poisson(width)       !! Poisson's ratio
+      real(wp) :: mean(width, 4)       !! volume, and it times lambda, mu, density
+      real(wp) :: plane(width, 6, 3)   !! 11 22 33 12, u_1,1 u_2,1 of modes I, II, a line force
+      real(wp) :: shear(width, 3)      !! 23 13, u_3,1 of mode III
+      real(wp) :: g(width, 3)          !! direction of q
+      real(wp) :: h(width, 3)          !! u_i,k g_k
+      real(wp) :: energy(width)        !! of stress work and relative motion [stress]
+      real(wp) :: source(width, 5)     !! of J, of interactions I to III and force [force, force/K]
    end type view_t
 
 contains
@@ -41,12 +43,12 @@ contains
       type(front_points_t), intent(in) :: points
       integer, intent(in) :: m                       !! point
       type(view_t), intent(out) :: view              !! without what `aim` adds
-      real(wp) :: e(3, 3), x(lanes, 3), away(lanes, 3), s(lanes, 6), pull(lanes, 3)
-      real(wp) :: side(lanes), lambda(lanes), mu(lanes)
+      real(wp) :: e(3, 3), x(width, 3), away(width, 3), s(width, 6), pull(width, 3)
+      real(wp) :: side(width), lambda(width), mu(width)
       integer :: i
 
       e = points%frame(:, :, m)
-      do i = 1, lanes
+      do i = 1, width
          associate (p => samples(chosen(min(i, size(chosen)))))
             x(i, :) = p%x - points%x(:, m)
             view%r(i) = p%r
@@ -74,19 +76,19 @@ contains
       call turn_vectors(e, pull, view%pull)
       call turn_tensors(e, s, view%stress)
       call find_strain(view%stress, mu, view%poisson, view%strain)
-      call unit_states(lanes, view%d(:, 1), view%d(:, 2), side, mu, view%poisson, view%plane, &
+      call unit_states(width, view%d(:, 1), view%d(:, 2), side, mu, view%poisson, view%plane, &
          view%shear)
    end subroutine look
 
    !> Components of vectors in a frame.
    pure subroutine turn_vectors(e, x, d)
-      real(wp), intent(in) :: e(3, 3), x(lanes, 3)
-      real(wp), intent(out) :: d(lanes, 3)
+      real(wp), intent(in) :: e(3, 3), x(width, 3)
+      real(wp), intent(out) :: d(width, 3)
       integer :: i, k
 
       do k = 1, 3
          !$omp simd
-         do i = 1, lanes
+         do i = 1, width
             d(i, k) = e(1, k)*x(i, 1) + e(2, k)*x(i, 2) + e(3, k)*x(i, 3)
          end do
       end do
@@ -94,15 +96,15 @@ contains
 
    !> Components of symmetric tensors, 11 22 33 12 23 13, in a frame.
    pure subroutine turn_tensors(e, s, t)
-      real(wp), intent(in) :: e(3, 3), s(lanes, 6)
-      real(wp), intent(out) :: t(lanes, 6)
+      real(wp), intent(in) :: e(3, 3), s(width, 6)
+      real(wp), intent(out) :: t(width, 6)
       real(wp) :: a, b, c
       integer :: i, k
       integer, parameter :: place(3, 3) = reshape([1, 4, 6, 4, 2, 5, 6, 5, 3], [3, 3])
 
       do k = 1, 3
          !$omp simd private(a, b, c)
-         do i = 1, lanes
+         do i = 1, width
             a = s(i, 1)*e(1, k) + s(i, 4)*e(2, k) + s(i, 6)*e(3, k)
             b = s(i, 4)*e(1, k) + s(i, 2)*e(2, k) + s(i, 5)*e(3, k)
             c = s(i, 6)*e(1, k) + s(i, 5)*e(2, k) + s(i, 3)*e(3, k)
@@ -115,13 +117,13 @@ contains
 
    !> Strain of stress; 12 23 13 twice.
    pure subroutine find_strain(t, mu, poisson, e)
-      real(wp), intent(in) :: t(lanes, 6), mu(lanes), poisson(lanes)
-      real(wp), intent(out) :: e(lanes, 6)
+      real(wp), intent(in) :: t(width, 6), mu(width), poisson(width)
+      real(wp), intent(out) :: e(width, 6)
       real(wp) :: pressure, half
       integer :: i
 
       !$omp simd private(pressure, half)
-      do i = 1, lanes
+      do i = 1, width
          half = 0.5_wp/mu(i)
          pressure = poisson(i)/(1 + poisson(i))*(t(i, 1) + t(i, 2) + t(i, 3))
          e(i, 1) = half*(t(i, 1) - pressure)
@@ -140,7 +142,7 @@ contains
       type(front_points_t), intent(in) :: points
       real(wp), intent(in) :: speed, drift(3)        !! of the front, of the material [length/time]
       type(view_t), intent(inout) :: view            !! g is known
-      real(wp) :: e(3, 3), t(3, 3), back_e(3, 3), along(lanes, 3), x(lanes, 3), g1, v(3)
+      real(wp) :: e(3, 3), t(3, 3), back_e(3, 3), along(width, 3), x(width, 3), g1, v(3)
       integer :: i, k
 
       e = points%frame(:, :, m)
@@ -150,7 +152,7 @@ contains
       call turn_vectors(back_e, view%g, along)
       do k = 1, 3
          !$omp simd
-         do i = 1, lanes
+         do i = 1, width
             x(i, k) = view%back(i, k, 1)*along(i, 1) + view%back(i, k, 2)*along(i, 2) &
                + view%back(i, k, 3)*along(i, 3)
          end do
@@ -159,7 +161,7 @@ contains
       view%h = view%g - view%h
       view%energy = view%work
       !$omp simd private(g1)
-      do i = 1, lanes
+      do i = 1, width
          g1 = view%g(i, 1)
          view%source(i, 1) = view%pull(i, 1)*view%h(i, 1) + view%pull(i, 2)*view%h(i, 2) &
             + view%pull(i, 3)*view%h(i, 3)
@@ -186,14 +188,14 @@ contains
    !> (2:4) and with a line force (5).
    pure subroutine flux_along(view, c, flux)
       type(view_t), intent(in) :: view
-      real(wp), intent(in) :: c(lanes, 3)
-      real(wp), intent(out) :: flux(lanes, 5)        !! [stress], interaction [stress/K]
-      real(wp) :: t(lanes, 3), p(lanes, 6), g1, c1, c2, c3, h1, h2, h3, cg
+      real(wp), intent(in) :: c(width, 3)
+      real(wp), intent(out) :: flux(width, 5)        !! [stress], interaction [stress/K]
+      real(wp) :: t(width, 3), p(width, 6), g1, c1, c2, c3, h1, h2, h3, cg
       integer :: i, k
       integer, parameter :: place(3) = [2, 3, 5]   !! in flux
 
       !$omp simd private(c1, c2, c3, h1, h2, h3, cg)
-      do i = 1, lanes
+      do i = 1, width
          c1 = c(i, 1)
          c2 = c(i, 2)
          c3 = c(i, 3)
@@ -214,7 +216,7 @@ contains
       end do
       do k = 1, 3
          !$omp simd private(g1)
-         do i = 1, lanes
+         do i = 1, width
             g1 = view%g(i, 1)
             flux(i, place(k)) = g1*(t(i, 1)*view%plane(i, 5, k) &
                + t(i, 2)*view%plane(i, 6, k)) &
@@ -223,7 +225,7 @@ contains
          end do
       end do
       !$omp simd
-      do i = 1, lanes
+      do i = 1, width
          flux(i, 4) = view%g(i, 1)*t(i, 3)*view%shear(i, 3) + p(i, 5)*view%shear(i, 1) &
             + p(i, 6)*view%shear(i, 2)
       end do
@@ -239,14 +241,14 @@ contains
       type(front_points_t), intent(in) :: points
       integer, intent(in) :: m
       real(wp), intent(in) :: inner                  !! length of g [length]
-      real(wp), intent(out) :: products(lanes, 5)
+      real(wp), intent(out) :: products(width, 5)
       real(wp) :: e(3), t(3), r, live, g, strain, v
       integer :: i
 
       e = points%frame(:, 3, m)
       t = matmul(e, points%turn(:, :, m))
       !$omp simd private(r, live, g, strain, v)
-      do i = 1, lanes
+      do i = 1, width
          v = view%volume(i)
          r = sqrt(view%d(i, 1)*view%d(i, 1) + view%d(i, 2)*view%d(i, 2))
          live = 0.5_wp + sign(0.5_wp, r - tiny(r))

@@ -14,7 +14,9 @@ module xmpm_face_work
    use xmpm_samples, only: sample_t, place_sample
    use xmpm_near_tip, only: unit_states
    use xmpm_front_points, only: front_points_t, window_at, direction_at
-   use xmpm_domain_integral, only: domain_shape_t, domain_sums_t, points_near, sees, profile
+   use xmpm_domain_integral, only: domain_shape_t, domain_sums_t, list_same_part, sees, &
+      profile
+   use xmpm_edge_points, only: edge_points_t
    use xmpm_face_points, only: face_points_t
    implicit none
    private
@@ -31,19 +33,21 @@ contains
       type(domain_shape_t), intent(in) :: shape
       type(domain_sums_t), intent(inout) :: sums   !! of all ranks
       type(sample_t) :: s
-      integer :: near(points%n), i, k, n
+      type(edge_points_t), allocatable :: near(:)
+      integer :: i, k, m
       logical :: inside
 
+      if (faces%n > 0) call list_same_part(front, points, shape%reach, near)
       do i = 1, faces%n
          if (.not. (faces%area(i) > 0 .and. any(abs(faces%traction(:, i)) > 0))) cycle
          s%x = faces%x(:, i)
          call place_sample(front, maxval(shape%radius), s, inside)
          if (.not. inside) cycle
-         call points_near(front, points, s, shape%reach, near, n)
-         do k = 1, n
-            if (.not. sums%material(1, near(k)) > 0) cycle
-            if (sees(front, points, near(k), shape%half_width, s)) call add_point(faces, i, s, &
-               points, near(k), shape, sums)
+         do k = 1, size(near(s%edge)%point)
+            m = near(s%edge)%point(k)
+            if (.not. sums%material(1, m) > 0) cycle
+            if (sees(points%x(:, m), points%frame(:, 3, m), shape, s)) call add_point(faces, i, s, &
+               points, m, shape, sums)
          end do
       end do
    end subroutine add_face_work

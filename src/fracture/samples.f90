@@ -3,7 +3,7 @@ module xmpm_samples
    use xmpm_kinds, only: wp
    use xmpm_communicator, only: comm_t
    use xmpm_halo, only: halo_t
-   use xmpm_lattice, only: bin_corner
+   use xmpm_lattice, only: bin_corner, block_width, bins_per_block
    use xmpm_grid, only: grid_t
    use xmpm_storage, only: particles_t, lanes, bin_of_chunk, c_x, c_v, c_m, c_vol, c_s, &
       n_near, near_crack, near_psi, trace_f, trace_work
@@ -13,7 +13,7 @@ module xmpm_samples
    use xmpm_transfer, only: bodies_t
    use xmpm_elastic, only: elastic_t
    use xmpm_loads, only: load_t, force_on_lanes
-   use xmpm_vectors, only: unit_vector, inverse
+   use xmpm_vectors, only: unit_vector
    use xmpm_front, only: front_t, front_place_t, nearest_on_front, nearest_of_group
    use xmpm_crack, only: crack_t
    use xmpm_chunk_state, only: pull_and_rate
@@ -23,24 +23,25 @@ module xmpm_samples
 
    public :: sample_t, collect_samples, place_sample
 
-   !> A particle near a front.
+   !> A particle near a front. What tells which points see it fills the first line of the cache;
+   !> what only moving fronts and circles want comes last.
    type :: sample_t
       real(wp) :: x(3) = 0           !! position [length]
+      real(wp) :: foot(3) = 0        !! nearest point of the front [length]
+      real(wp) :: r = 0              !! distance from the front [length]
+      integer :: edge = 0            !! front edge that holds the nearest point
+      real(wp) :: side = 1           !! 1 above, -1 below the crack
+      real(wp) :: away(3) = 0        !! unit vector from the front
       real(wp) :: volume = 0         !! [length^3]
       real(wp) :: density = 0        !! now [mass/length^3]
       real(wp) :: lambda = 0         !! first Lame constant [stress]
       real(wp) :: mu = 0             !! shear modulus [stress]
       real(wp) :: stress(6) = 0      !! xx yy zz xy yz xz [stress]
       real(wp) :: work = 0           !! stress work on a volume [stress]
-      real(wp) :: back(3, 3) = 0     !! inverse of the deformation gradient
       real(wp) :: pull(3) = 0        !! force of the divergence of stress [force]
+      real(wp) :: back(3, 3) = 0     !! inverse of the deformation gradient
       real(wp) :: v(3) = 0           !! velocity [length/time]
-      real(wp) :: rate(3, 3) = 0     !! velocity gradient dv_i/dx_j [1/time]
-      real(wp) :: side = 1           !! 1 above, -1 below the crack
-      real(wp) :: r = 0              !! distance from the front [length]
-      real(wp) :: away(3) = 0        !! unit vector from the front
-      real(wp) :: foot(3) = 0        !! nearest point of the front [length]
-      integer :: edge = 0            !! front edge that holds it
+      real(wp) :: rate(3, 3) = 0     !! velocity gradient dv_i/dx_j, if wanted [1/time]
    end type sample_t
 
    real(wp), parameter :: margin = 0.9_wp        !! of a chunk around the middle of its bin [cells]
@@ -125,7 +126,7 @@ contains
          p%near(:, p%trace + trace_f:p%trace + trace_f + 8, p%attached(c))
    end subroutine read_fields
 
-   !> The traced chunks whose bins are near a front.
+   !> The traced chunks whose bins are near a front, block by block.
    pure subroutine find_chunks(front, reach, grid, p, near, distance)
       type(front_t), intent(in) :: front
       real(wp), intent(in) :: reach            !! of the bins' middles [length]
@@ -133,25 +134,51 @@ contains
       type(particles_t), intent(in) :: p
       integer, allocatable, intent(out) :: near(:)
       real(wp), allocatable, intent(out) :: distance(:)   !! of the bins' middles [length]
-      real(wp) :: away(count(p%attached(:p%n_chunks) > 0))
-      integer :: chosen(count(p%attached(:p%n_chunks) > 0)), c, n
+      real(wp) :: away(p%n_attached), middle(3), h
+      integer :: chosen(p%n_attached), b, n
       type(front_place_t) :: place
 
+      h = grid%lattice%size
       n = 0
       if (p%trace >= 0) then
-         do c = 1, p%n_chunks
-            if (p%attached(c) == 0) cycle
-            if (p%count(c) == 0) cycle
-            call nearest_on_front(front, middle_of_bin(grid, p, c), reach, place)
-            if (place%edge == 0) cycle
-            n = n + 1
-            chosen(n) = c
-            away(n) = place%distance
+         do b = 1, grid%blocks%n
+            middle = bin_corner(grid%lattice, block_width*grid%blocks%place(:, b)) &
+               + 0.5_wp*real(block_width, wp)*h
+            call nearest_on_front(front, middle, reach + margin*real(block_width - 1, wp)*h, place)
+            if (place%edge > 0) call search_block(front, reach, grid, p, b, chosen, away, n)
          end do
       end if
       near = chosen(:n)
       distance = away(:n)
    end subroutine find_chunks
+
+   !> Append the chunks of one block.
+   pure subroutine search_block(front, reach, grid, p, b, chosen, away, n)
+      type(front_t), intent(in) :: front
+      real(wp), intent(in) :: reach
+      type(grid_t), intent(in) :: grid
+      type(particles_t), intent(in) :: p
+      integer, intent(in) :: b                            !! block
+      integer, intent(inout) :: chosen(:), n              !! filled up to n
+      real(wp), intent(inout) :: away(:)
+      type(front_place_t) :: place
+      integer :: k, c
+
+      do k = 1, bins_per_block
+         c = p%head(k, b)
+         if (c == 0) cycle
+         call nearest_on_front(front, middle_of_bin(grid, p, c), reach, place)
+         if (place%edge == 0) cycle
+         do while (c > 0)
+            if (p%attached(c) > 0) then
+               n = n + 1
+               chosen(n) = c
+               away(n) = place%distance
+            end if
+            c = p%next(c)
+         end do
+      end do
+   end subroutine search_block
 
    !> Middle of the bin of a chunk.
    pure function middle_of_bin(grid, p, c) result(middle)
@@ -180,22 +207,23 @@ contains
       type(sample_t), intent(inout) :: samples(:)
       integer, intent(inout) :: n
       real(wp), intent(in), optional :: fields(:, :)   !! (8,18) instead of what particles carry
-      real(wp) :: pull(lanes, 3), rate(lanes, 9), load(lanes, 3)
+      real(wp) :: pull(lanes, 3), rate(lanes, 9), f(lanes, 9), back(lanes, 9)
+      logical :: traced(lanes)
       type(front_place_t) :: places(lanes)
       integer :: i
 
       call nearest_of_group(front, lanes, p%q(:, c_x:c_x + 2, c), middle_of_bin(grid, p, c), &
          margin*grid%lattice%size, distance, reach, places)
       if (all(places(:p%count(c))%edge == 0)) return
-      call pull_and_rate(p, c, bodies%half(p%body(c)), kernels, sided, grid, moving, pull, &
-         rate)
-      do i = 1, size(loads)
-         call force_on_lanes(loads(i), p, grid, c, time, load)
-         pull = pull - load
-      end do
+      call pull_and_rate(p, c, bodies%half(p%body(c)), kernels, sided, grid, moving, pull, rate)
+      call take_loads(loads, p, grid, c, time, pull)
+      f = p%near(:, p%trace + trace_f:p%trace + trace_f + 8, p%attached(c))
+      traced = any(abs(f) > 0, dim=2)
+      if (present(fields)) f = fields(:, f_deformation:f_deformation + 8)
+      call invert_lanes(f, back)
       do i = 1, p%count(c)
          if (places(i)%edge == 0) cycle
-         if (.not. is_traced_lane(p, c, i)) cycle
+         if (.not. traced(i)) cycle
          associate (s => samples(n + 1))
             s%x = p%q(i, c_x:c_x + 2, c)
             s%side = side_of_lane(p, c, i, number)
@@ -204,9 +232,8 @@ contains
             if (present(fields)) then
                s%stress = fields(i, f_stress:f_stress + 5)
                s%v = fields(i, f_velocity:f_velocity + 2)
-               s%back = rows_of(fields(i, f_deformation:f_deformation + 8))
             end if
-            s%back = inverse(s%back)
+            s%back = rows_of(back(i, :))
             s%lambda = 0
             s%mu = 0
             select type (law => bodies%laws(bodies%law_of(p%body(c)))%law)
@@ -216,20 +243,53 @@ contains
                if (present(fields)) s%work = law%strain_energy(s%stress)
             end select
             s%pull = pull(i, :)
-            s%rate = rows_of(rate(i, :))
+            if (moving) s%rate = rows_of(rate(i, :))
          end associate
          n = n + 1
       end do
    end subroutine sample_chunk
 
-   !> Whether a particle of a chunk with a near record has a trace.
-   pure function is_traced_lane(p, c, lane) result(traced)
+   !> Take the loads on the particles of a chunk from the force at the nodes.
+   subroutine take_loads(loads, p, grid, c, time, pull)
+      type(load_t), intent(in) :: loads(:)
       type(particles_t), intent(in) :: p
-      integer, intent(in) :: c, lane
-      logical :: traced
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: c
+      real(wp), intent(in) :: time
+      real(wp), intent(inout) :: pull(lanes, 3)   !! [force]
+      real(wp) :: load(lanes, 3)
+      integer :: i
 
-      traced = any(abs(p%near(lane, p%trace + trace_f:p%trace + trace_f + 8, p%attached(c))) > 0)
-   end function is_traced_lane
+      do i = 1, size(loads)
+         call force_on_lanes(loads(i), p, grid, c, time, load)
+         pull = pull - load
+      end do
+   end subroutine take_loads
+
+   !> Inverses of the matrices in all lanes, each given by its rows one after the other; 0 where a
+   !> lane is 0.
+   pure subroutine invert_lanes(a, b)
+      real(wp), intent(in) :: a(lanes, 9)
+      real(wp), intent(out) :: b(lanes, 9)
+      real(wp) :: per
+      integer :: i
+
+      !$omp simd private(per)
+      do i = 1, lanes
+         b(i, 1) = a(i, 5)*a(i, 9) - a(i, 6)*a(i, 8)
+         b(i, 2) = a(i, 3)*a(i, 8) - a(i, 2)*a(i, 9)
+         b(i, 3) = a(i, 2)*a(i, 6) - a(i, 3)*a(i, 5)
+         b(i, 4) = a(i, 6)*a(i, 7) - a(i, 4)*a(i, 9)
+         b(i, 5) = a(i, 1)*a(i, 9) - a(i, 3)*a(i, 7)
+         b(i, 6) = a(i, 3)*a(i, 4) - a(i, 1)*a(i, 6)
+         b(i, 7) = a(i, 4)*a(i, 8) - a(i, 5)*a(i, 7)
+         b(i, 8) = a(i, 2)*a(i, 7) - a(i, 1)*a(i, 8)
+         b(i, 9) = a(i, 1)*a(i, 5) - a(i, 2)*a(i, 4)
+         per = a(i, 1)*b(i, 1) + a(i, 2)*b(i, 4) + a(i, 3)*b(i, 7)
+         per = 1/merge(per, 1.0_wp, abs(per) > 0)
+         b(i, :) = per*b(i, :)
+      end do
+   end subroutine invert_lanes
 
    !> The side of a crack that a particle carries, 0 where it has none.
    pure function side_of_lane(p, c, lane, number) result(side)
@@ -245,20 +305,17 @@ contains
       end do
    end function side_of_lane
 
-   !> What a traced particle carries itself; `back` holds its deformation gradient.
+   !> What a traced particle carries itself.
    pure subroutine read_lane(p, c, lane, s)
       type(particles_t), intent(in) :: p
       integer, intent(in) :: c, lane
       type(sample_t), intent(inout) :: s
-      integer :: r
 
-      r = p%attached(c)
       s%v = p%q(lane, c_v:c_v + 2, c)
       s%volume = p%q(lane, c_vol, c)
       s%density = p%q(lane, c_m, c)/s%volume
       s%stress = p%q(lane, c_s:c_s + 5, c)
-      s%work = p%near(lane, p%trace + trace_work, r)/s%volume
-      s%back = rows_of(p%near(lane, p%trace + trace_f:p%trace + trace_f + 8, r))
+      s%work = p%near(lane, p%trace + trace_work, p%attached(c))/s%volume
    end subroutine read_lane
 
    !> A matrix from its rows one after the other.
