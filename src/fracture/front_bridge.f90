@@ -11,6 +11,8 @@ module xmpm_front_bridge
 
    public :: join_chains, close_chain
 
+   integer, parameter :: farthest_out = 12   !! quarters of a cell that an end of a row is led out
+
 contains
 
    !> Rows of triangles between two fronts that have met, no longer than segments may be.
@@ -24,8 +26,7 @@ contains
       integer, intent(in) :: attempt                   !! 1, 2 without the ends, 3 in one row
       type(draft_t), intent(inout) :: draft            !! gets the triangles
       integer, allocatable :: tri(:, :), row(:), next(:), far(:)
-      real(wp) :: part
-      integer :: i, k, first, last, rows, from
+      integer :: i, k, first, last, rows
 
       call ends_of_line(front, other, material, attempt > 1, first, last)
       far = [(front%vertex(i), i=last, first, -1)]
@@ -36,19 +37,37 @@ contains
          nint(mean_gap(row, far, draft)/limits%longest))
       do k = 1, rows
          next = far
-         part = 1.0_wp/real(rows - k + 1, wp)
-         if (k < rows) next = row
-         do i = 1, merge(size(row), 0, k < rows)
-            if (any(far == row(i))) cycle
-            from = first + i - 1
-            call add_vertex(front, draft%x(:, row(i)) + part*(opposite(row, i, far, draft) &
-               - draft%x(:, row(i))), [from, from], 0.0_wp, draft)
-            next(i) = size(draft%x, 2)
-         end do
+         if (k < rows) call add_row(row, far, rows - k + 1, first)
          call strip_between(row, next, front%closed(chain), draft%x, front%e2(:, first:last), tri)
          call add_triangles(tri, draft)
          row = next
       end do
+
+   contains
+
+      !> The next of the rows that are left, its ends outside.
+      subroutine add_row(row, far, left, first)
+         integer, intent(in) :: row(:), far(:)   !! vertices that it follows and those it ends at
+         integer, intent(in) :: left             !! rows to the far line
+         integer, intent(in) :: first            !! node of the front behind the first vertex
+         real(wp) :: x(3, size(row))
+         integer :: i, n
+
+         n = size(row)
+         do i = 1, n
+            associate (here => draft%x(:, row(i)))
+               x(:, i) = here + (opposite(row, i, far, draft) - here)/real(left, wp)
+            end associate
+         end do
+         call lead_out(material, limits, x(:, 2), x(:, 1))
+         call lead_out(material, limits, x(:, n - 1), x(:, n))
+         next = row
+         do i = 1, n
+            if (any(far == row(i))) cycle
+            call add_vertex(front, x(:, i), spread(first + i - 1, 1, 2), 0.0_wp, draft)
+            next(i) = size(draft%x, 2)
+         end do
+      end subroutine add_row
    end subroutine join_chains
 
    !> First and last node of a chain, or of what is left of it with one node outside at each end.
@@ -71,6 +90,24 @@ contains
          last = last - 1
       end do
    end subroutine ends_of_line
+
+   !> Move an end of a row along the row until it is outside: over a curved wall the straight way
+   !> between two fronts sinks into the material.
+   pure subroutine lead_out(material, limits, beside, x)
+      class(material_test_t), intent(in) :: material
+      type(front_limits_t), intent(in) :: limits
+      real(wp), intent(in) :: beside(3)    !! the vertex beside it [length]
+      real(wp), intent(inout) :: x(3)      !! the end [length]
+      real(wp) :: step(3)
+      integer :: i
+
+      if (.not. norm2(x - beside) > 0.0_wp) return
+      step = 0.25_wp*limits%cell*(x - beside)/norm2(x - beside)
+      do i = 1, farthest_out
+         if (.not. material%inside(x)) return
+         x = x + step
+      end do
+   end subroutine lead_out
 
    !> Mean distance between the vertices of a line and the places opposite to them.
    pure function mean_gap(row, far, draft) result(gap)

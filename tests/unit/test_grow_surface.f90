@@ -32,7 +32,8 @@ program test_grow_surface
    call kink_of_sixty_degrees()
    call noise_dies_out()
    call half_a_front_waits()
-   call fronts_meet_in_a_tube()
+   call fronts_meet_in_a_tube(limits%meeting, 50)
+   call fronts_meet_in_a_tube(8.0_wp, 44)
    call ring_closes()
    call motion_of_new_vertices()
    call folds_wait()
@@ -313,10 +314,18 @@ contains
          - area, 22.5_wp*pi, 0.0_wp, 0.1_wp)
    end subroutine half_a_front_waits
 
-   !> A crack through the wall of a tube; both fronts run round and meet on the other side.
-   subroutine fronts_meet_in_a_tube()
+   !> A crack through the wall of a tube; both fronts run round and meet on the other side, from
+   !> nearby or from further off, where the straight way between them cuts through the hole and
+   !> leaves the wall bare outside.
+   subroutine fronts_meet_in_a_tube(apart, earliest)
+      real(wp), intent(in) :: apart      ! distance from which they meet
+      integer, intent(in) :: earliest    ! increment at which they may
       real(wp), allocatable :: advance(:, :)
+      type(front_limits_t) :: far
       integer :: i, k
+
+      far = limits
+      far%meeting = apart
 
       body = tube_t()
       body%inner = 8
@@ -331,7 +340,7 @@ contains
             advance(:, k) = rotated(front%x(:, k), sign(0.05_wp, dot_product(front%e1(:, k), &
                [-front%x(2, k), front%x(1, k), 0.0_wp]))) - front%x(:, k)
          end do
-         call grow_by(advance)
+         call grow_cut(advance, far, body, surface, front, grown, error)
          call check_no_error(suite, 'fronts run round a tube', error)
          if (allocated(error)) return
          if (front%edge_count == 0) exit
@@ -339,10 +348,31 @@ contains
       call check(suite, 'the fronts met and were joined', grown%joined == 1)
       call check(suite, 'the tube is cut', front%edge_count == 0)
       ! each goes from 0.25 to pi, half a turn, at 0.05 an increment, and waits a cell before it
-      call check(suite, 'they met half way round', i > 50 .and. i < 62)
+      call check(suite, 'they met half way round', i > earliest .and. i < earliest + 12)
       call check(suite, 'the ring has two rims', size(surface%loop_offset) == 3)
       call check(suite, 'the ring covers the wall', surface_area(surface) > 80*pi)
+      ! the surface is plane, so that only rounding is left
+      call check_close(suite, 'to its outer rim', farthest_bare(11.9_wp), 0.0_wp, 1e-9_wp, 0.0_wp)
+      call check_close(suite, 'and to its inner rim', farthest_bare(8.1_wp), 0.0_wp, 1e-9_wp, &
+         0.0_wp)
    end subroutine fronts_meet_in_a_tube
+
+   !> Largest distance of the surface from points of a circle.
+   function farthest_bare(radius) result(d)
+      real(wp), intent(in) :: radius
+      real(wp) :: d, a
+      type(surface_index_t) :: index
+      type(nearest_t) :: near
+      integer :: i
+
+      call build_index(surface, index)
+      d = 0
+      do i = 1, 720
+         a = 2*pi*real(i, wp)/720
+         call nearest_on_surface(index, surface, radius*[cos(a), sin(a), 0.0_wp], 10.0_wp, near)
+         d = max(d, near%distance)
+      end do
+   end function farthest_bare
 
    pure function rotated(x, angle) result(y)
       real(wp), intent(in) :: x(3), angle
