@@ -4,7 +4,7 @@
 !> 2 S f - S S f of a field, with S = N S+ and S+ the map back to them with mass weights. Of the
 !> loss, the sum of m d.(v + c)/2 over the particles, that of m (B d).(B (v + c)/2) is theirs. On
 !> the nodes, with G = S+ N and q = S+ d = eta u + G (dv - change), it is the sum of
-!> m (2 q - G q).(2 r - G r), r = G z, z = u + dv/2 - q/2.
+!> m (2 q - G q).(2 r - G r), r = G z, z = S+ (v + c)/2 = u + G dv/2 - q/2.
 module xmpm_seen_loss
    use xmpm_kinds, only: wp
    use xmpm_halo, only: start_sum, finish_sum
@@ -48,12 +48,13 @@ contains
       real(wp), intent(in) :: eta        !! share of their velocity that the particles lose
       real(wp), intent(in) :: dv(:, :)   !! (3,rows) change of the nodes' velocity
       real(wp) :: energy
-      real(wp), allocatable :: change(:, :), u(:, :), q(:, :), r(:, :)
+      real(wp), allocatable :: change(:, :), u(:, :), q(:, :), r(:, :), gain(:, :)
 
       change = m%grid%node(5:7, :)
       u = m%grid%node(2:4, :) - dv
-      q = eta*u + smoothed(m, dv - change)
-      r = smoothed(m, u + 0.5_wp*dv - 0.5_wp*q)
+      gain = smoothed(m, dv)
+      q = eta*u + gain - smoothed(m, change)
+      r = smoothed(m, u + 0.5_wp*gain - 0.5_wp*q)
       q = 2*q - smoothed(m, q)
       r = 2*r - smoothed(m, r)
       energy = dot_rows(m, q, r)

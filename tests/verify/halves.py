@@ -53,6 +53,8 @@ def judge_halves(body: Body, run: Measured, method: str, h: float) -> Iterator[R
     yield row("lower half: momentum/impulse", down, -1.0, 0.01)
     balance = float(np.abs(results.energy["relative_error"]).max())
     yield row("balance of energy", balance, 0.0, 0.05, balance)
+    closure = float(np.abs(results.energy["fracture_error"]).max())
+    yield row("balance with G dA", closure, 0.0, 0.05, closure)
 
 
 def shipped(name: str, h: float, end: float, criterion: str = "hoop") -> str:
