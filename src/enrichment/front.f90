@@ -179,6 +179,7 @@ contains
 
       best = reach*reach
       edge = 0
+      fraction = 0
       call edges_within(front, middle, distance + 2*radius, near, count)
       do k = 1, count
          call try_edge_of_group(front, near(k), n, x, best, edge, fraction)
