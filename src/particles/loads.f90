@@ -233,7 +233,8 @@ contains
    end function face_frame
 
    !> Force on each lane, and the lanes moved out to the face, but not out of the cell: a node
-   !> beyond it, to which GIMP gives next to no mass, must not take a share of the force.
+   !> beyond it, to which GIMP gives no mass or next to none, must not take a share of the force, not
+   !> even that of a point's width.
    subroutine force_of_lanes(load, p, grid, c, factor, force, q)
       type(load_t), intent(in) :: load
       type(particles_t), intent(in) :: p
@@ -258,9 +259,9 @@ contains
          high = corner + size
          if (grid%lattice%shape == gimp_shape) then
             where (q(i, 1:3) < corner + 0.5_wp*size)
-               high = corner + 0.5_wp*size
+               high = corner + (0.5_wp - point)*size
             else where
-               low = corner + 0.5_wp*size
+               low = corner + (0.5_wp + point)*size
             end where
          end if
          q(i, 1:3) = q(i, 1:3) + load%table%offset(:, at)
