@@ -20,7 +20,7 @@ program test_cosine_fall
    t(:4) = [-7.0_wp, 0.0_wp, 1.0_wp, 7.0_wp]
    call cosine_fall(4, t(:4), f(:4), slope(:4))
    call check(suite, 'it is exactly 1 before 0 and 0 from 1 on', &
-      .not. any(abs(f(:4) - [1, 1, 0, 0]) > 0))
+      .not. any(abs(f(:4) - [1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp]) > 0))
    call check(suite, 'where it has no slope', .not. any(abs(slope(:4)) > 0))
    call finish(suite)
 end program test_cosine_fall
