@@ -233,8 +233,8 @@ contains
    end function face_frame
 
    !> Force on each lane, and the lanes moved out to the face, but not out of the cell: a node
-   !> beyond it, to which GIMP gives no mass or next to none, must not take a share of the force, not
-   !> even that of a point's width.
+   !> beyond it, to which GIMP gives no mass or next to none, must not take a share of the force,
+   !> not even that of a point's width.
    subroutine force_of_lanes(load, p, grid, c, factor, force, q)
       type(load_t), intent(in) :: load
       type(particles_t), intent(in) :: p

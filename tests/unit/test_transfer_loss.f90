@@ -192,7 +192,7 @@ contains
       character(len=*), intent(in) :: head, shape, rest
       real(wp), intent(in) :: eta   !! share of the nodal velocity in a step
       type(model_t) :: m
-      real(wp), allocatable :: u(:, :), v(:, :, :), d(:, :, :)
+      real(wp), allocatable :: u(:, :), dv(:, :), v(:, :, :), d(:, :, :)
       real(wp) :: sums(3)
       integer, allocatable :: chunks(:)
       integer :: c, i
@@ -205,8 +205,9 @@ contains
       u = velocity_of(m)
       v = m%particles%q(:, 4:6, chunks)
       call advance_nodes(m, dt)
-      u = m%grid%node(2:4, :m%grid%n_rows) - u
-      sums(1) = seen_loss(m, eta, u)
+      allocate (dv(3, size(m%grid%node, 2)), source=0.0_wp)
+      dv(:, :m%grid%n_rows) = m%grid%node(2:4, :m%grid%n_rows) - u
+      sums(1) = seen_loss(m, eta, dv)
       d = v + m%flip%change(:, :, chunks)
       call map_to_particles(m, remap=.true.)
       d = d - m%particles%q(:, 4:6, chunks)
