@@ -11,6 +11,8 @@ from reproduction.through import cut_through
 
 DIFFERS = """
 The paper states no load; 400 MPa is that of the rod. Figure 26 has no printed numbers.
+The fronts come beside each other 11 mm apart; the deck joins them at 15 mm (`meeting`), else they
+pass each other and stop with a tongue of the wall between them.
 """
 
 
